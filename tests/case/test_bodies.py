@@ -93,7 +93,7 @@ def test_a_strength_of_ones_own():
     [
         ("2.8 Y", r"needs first\.yield_strength, which is not given; give it"),
         ("hardness", r"needs first\.hardness, which is not given; give it"),
-        ("28 Y", "is not a contact pressure"),
+        ("28 Y", "is not a plausible contact pressure"),
         ("Y", "is not one number followed by a unit"),
         ("hard", "is not one number followed by a unit"),
         ("-1 MPa", "greater than zero"),
@@ -168,7 +168,7 @@ def test_a_yield_pressure_keeps_the_constant_bound():
         ),
         (
             'plasticity = "truncated"\nyield_strength = "2 GPa"',
-            'plasticity = "truncated" takes a yield_pressure instead',
+            'is not used with plasticity = "truncated"; give a yield_pressure',
         ),
         ('plasticity = "expanding-cavity"', r"first \(glass\), .*, has no yield_strength; give"),
         ('tangent_modulus = "1 GPa"', r"first \(glass\), .*, has no yield_strength; give"),

@@ -77,10 +77,10 @@ def test_without_angle_and_spin_nothing_changes():
         (
             'angle = "90 deg"',
             {},
-            'impact.angle: "90 deg" is not an angle of impact; give 0 to below',
+            'impact.angle: "90 deg" is not an angle of impact; give an angle',
         ),
-        ('angle = "95 deg"', {}, "below 90 degrees from the normal"),
-        ('angle = "-1 deg"', {}, "below 90 degrees from the normal"),
+        ('angle = "95 deg"', {}, "from the normal of at least 0 and less than 90 degrees"),
+        ('angle = "-1 deg"', {}, "from the normal of at least 0 and less than 90 degrees"),
         ('angle = "30 m"', {}, 'impact.angle: "30 m" is not an angle; write for example'),
         ("angle = 30", {}, 'impact.angle: 30 has no unit; write for example "30 deg"'),
         ("angle = []", {}, "impact.angle: .* should be a list with at least one value"),

@@ -85,7 +85,7 @@ def test_a_pair_may_have_an_interface_of_its_own(mixture_text):
         ("[grid]", '[pairs."alu+copper"]\n[grid]', 'pairs."alu+copper": is not a pair of'),
         (RADII, '{ bins = [["20 um", "80 um"], ["70 um", "90 um"]] }', "bins: overlap between"),
         (RADII, '{ edges = ["20 um", "10 um"] }', "edges: must increase"),
-        (RADII, '{ median = "20 um" }', "give one of edges, bins, or median with geometric_std"),
+        (RADII, '{ median = "20 um" }', "give edges, or bins, or median and geometric_std"),
         (RADII, '["50 um mm"]', "materials.alu.radius"),
         (RADII, '["50 um", "50 um"]', "materials.alu.radius: a radius is given twice"),
         (RADII, '["50"]', "has no unit"),
@@ -98,7 +98,7 @@ def test_a_pair_may_have_an_interface_of_its_own(mixture_text):
         ('material = "pmma"', 'material = "unobtainium"', "materials.pmma"),
         ('material = "steel"', 'material = "steel"\nradius = "1 mm"', "a wall is flat"),
         (RADII, f"{RADII}\nmass_fractions = [0.5, 0.5]", "has 2 values for 3 sizes"),
-        (RADII, f"{RADII}\nmass_fractions = [0.5, 0.5, 0.5]", "the sum is 1.5, and should be 1"),
+        (RADII, f"{RADII}\nmass_fractions = [0.5, 0.5, 0.5]", "the sum is 1.5, but should be 1"),
         (
             RADII,
             f"{RADII}\nmass_fractions = [1.0, 0.5, -0.5]",

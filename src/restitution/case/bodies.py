@@ -1,4 +1,4 @@
-"""`[first]`, `[second]` and `[interface]`: materials, yielding, adhesion and friction."""
+"""The tables `[first]`, `[second]` and `[interface]`: materials, yielding, adhesion, friction."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from restitution.contact.contact import (
 from restitution.contact.detachment import Detachment
 from restitution.errors import CaseError, shown
 
-# Values that a library material supplies to a body, with their units.
+# Keys of a body that the materials library can supply, with their SI units.
 FROM_LIBRARY = {
     "youngs_modulus": "Pa",
     "poissons_ratio": "",
@@ -45,7 +45,8 @@ _STRENGTHS = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*(?:\*\s*)?Y\s*")
 class BodyTable(Table):
     """The tables `[first]` and `[second]`.
 
-    In the case file, a material name in place of the table means a flat wall of this material.
+    In the case file, `second = "steel"` instead of a table means a flat wall of steel. Any other
+    material of the library can be named in the same way.
     """
 
     material: str | None = None
@@ -91,15 +92,16 @@ class BodyTable(Table):
 
 
 YieldRule = tuple[float, Literal["yield_strength", "hardness"]]
-MOST_FRICTION = 10.0  # largest accepted coefficient of friction; a larger value must be a mistake
-_CONSTANT_BOUND = ("equilibrium", "truncated")  # models with a constant bound of the pressure
+MOST_FRICTION = 10.0  # largest coefficient of friction; a larger value must be a mistake
+# Models of plasticity that limit the contact pressure to a constant.
+_CONSTANT_BOUND = ("equilibrium", "truncated")
 
 
 def _pressure_or_rule(value: Any) -> float | YieldRule:
-    """Read a yield pressure: a pressure (Pa; infinite for "elastic") or a rule.
+    """Read the key `yield_pressure`: return a pressure in Pa, or a rule.
 
-    A rule is a factor and the quantity that the factor multiplies. "2.8 Y" gives
-    (2.8, "yield_strength"), and "hardness" gives (1.0, "hardness").
+    The pressure is infinite for "elastic". A rule is a factor and the quantity that the factor
+    multiplies. "2.8 Y" gives (2.8, "yield_strength"), and "hardness" gives (1.0, "hardness").
     """
     if value == "elastic":
         return math.inf
@@ -110,15 +112,19 @@ def _pressure_or_rule(value: Any) -> float | YieldRule:
         return read_positive(value, "Pa")
     if not 0.5 <= (factor := float(match[1])) <= 10:
         raise ValueError(
-            f"{shown(value)} is not a contact pressure; give a factor of Y from 0.5 to 10 (usually "
-            "1.6 to 3)"
+            f"{shown(value)} is not a plausible contact pressure; the factor of Y must be from 0.5 "
+            "to 10 (usually 1.6 to 3)"
         )
     return factor, "yield_strength"
 
 
 @dataclass(frozen=True)
 class Yielding:
-    """The yield model of a contact: arguments of `Contact` (Pa), and their `source` in words."""
+    """The yield model of a contact.
+
+    `source` says in words where the values come from. The other fields are arguments of `Contact`:
+    the name of the model, and pressures in Pa.
+    """
 
     source: str
     plasticity: Plasticity = "equilibrium"
@@ -159,9 +165,9 @@ class InterfaceTable(Table):
         growing = [key for key in keys if getattr(self, key) is not None]
         if self.yield_pressure is not None and growing:
             raise ValueError(
-                f"yield_pressure, {growing[0]}: give only one of them; with yield_pressure the "
-                "contact pressure has a constant bound, and with yield_strength (of a tensile "
-                "test) the bound grows with deformation"
+                f"yield_pressure, {growing[0]}: give only one of them; yield_pressure limits the "
+                "contact pressure to a constant, and with yield_strength (of a tensile test) this "
+                "limit grows with deformation"
             )
         if self.yield_pressure is not None and self.plasticity == "expanding-cavity":
             raise ValueError(
@@ -170,8 +176,8 @@ class InterfaceTable(Table):
             )
         if growing and self.plasticity in _CONSTANT_BOUND:
             raise ValueError(
-                f'{growing[0]}: plasticity = "{self.plasticity}" takes a yield_pressure instead, '
-                "about 2.8 times the yield strength"
+                f'{growing[0]}: is not used with plasticity = "{self.plasticity}"; give a '
+                "yield_pressure (about 2.8 times the yield strength) instead"
             )
         return self
 
@@ -202,9 +208,9 @@ class InterfaceTable(Table):
     def yielding(self, first: BodyTable, second: BodyTable) -> Yielding:
         """Choose the yield model of the contact between two bodies; the softer body yields.
 
-        By default, a body of known yield strength has a pressure bound that grows with deformation.
-        A body for which only a hardness is known (such as glass) yields at its hardness. Raises
-        `CaseError` if a value that the model needs is unknown.
+        If the yield strength of this body is known, the limit of the contact pressure grows with
+        deformation by default. If only its hardness is known (as for glass), it yields at this
+        hardness. Raises `CaseError` if a value that the model needs is unknown.
         """
         if self.yield_pressure is not None or self.plasticity in _CONSTANT_BOUND:
             return self._at_a_pressure(first, second)
@@ -236,10 +242,10 @@ class InterfaceTable(Table):
         )
 
     def _at_a_pressure(self, first: BodyTable, second: BodyTable) -> Yielding:
-        """Make the model with a constant yield pressure: given, or that of the softer body.
+        """Make the model with a constant yield pressure: the given one, or that of the softer body.
 
-        By default, the yield pressure is 2.8 Y. A body without a yield strength Y yields at its
-        hardness.
+        The yield pressure of a body is a multiple of its yield strength Y, by default 2.8 Y. A body
+        whose Y is unknown yields at its hardness.
         """
         model = self.plasticity or "equilibrium"
         if isinstance(self.yield_pressure, float):
@@ -264,7 +270,7 @@ class InterfaceTable(Table):
                 raise CaseError(
                     f"interface.yield_pressure: needs {name}.{quantity}, which is not given"
                     + (f", and the library has none for {body.material}" if body.material else "")
-                    + "; give it, or the pressure itself"
+                    + "; give it, or write yield_pressure as a pressure"
                 )
         pressure, source = min(found)
         return Yielding(source, model, yield_pressure=pressure)

@@ -101,8 +101,8 @@ class Case(Table):
         yielding = self.yielding()
         if yielding.plasticity != "equilibrium":
             raise ValueError(
-                "interface.yield_pressure: is missing; a periodic contact needs a constant "
-                'pressure (such as "2.8 Y" or "hardness"), or "elastic"'
+                "interface.yield_pressure: a periodic contact needs a constant yield pressure "
+                '(such as "2.8 Y" or "hardness") or "elastic", and plasticity = "equilibrium"'
             )
         if not isinstance(self.grid.refine, int):
             raise ValueError("grid.refine: must be one number if the grid is periodic")
@@ -136,7 +136,7 @@ class Case(Table):
         if self.indentation is None:
             raise ValueError(
                 "interface.work_of_adhesion: a periodic contact with adhesion needs [indentation], "
-                "because its indentation jumps if the load or the pressure is prescribed"
+                "because the indentation would jump at some values of a prescribed load or pressure"
             )
 
     def _check_masses(self) -> None:
@@ -176,7 +176,7 @@ class Case(Table):
         raise ValueError(f"grid: nodes and spacing are missing; {why}: give both")
 
     def bodies(self) -> dict[str, BodyTable]:
-        """The tables of both bodies; the second body is like the first if it is left out."""
+        """The tables of both bodies; if [second] is left out, it is the same as [first]."""
         return {"first": self.first, "second": self.second or self.first}
 
     @property
@@ -185,20 +185,23 @@ class Case(Table):
         return max((part.realisations for part in self.roughness), default=1)
 
     def realisation(self, number: int) -> Case:
-        """Return the case of the single surface `number`, counted from 0."""
+        """Return the case with only one of its surfaces: `number`, counted from 0."""
         parts = tuple(
             part.variant(number) if part.realisations > 1 else part for part in self.roughness
         )
         return self.model_copy(update={"roughness": parts})
 
     def variant(self, number: int) -> Case:
-        """Return this case with other surfaces: add `number` to each seed or place on a scan."""
+        """Return this case with other surfaces.
+
+        `number` is added to the seed of each surface or, for a scan, to the place on the scan.
+        """
         return self.model_copy(
             update={"roughness": tuple(part.variant(number) for part in self.roughness)}
         )
 
     def has_library_values(self) -> bool:
-        """Whether any value of the bodies is from the materials library, so its spread is known."""
+        """Whether the materials library supplies a value of a body, so that its spread is known."""
         return any(body.from_library() for body in self.bodies().values())
 
     def refined(self, factor: int) -> Case:
@@ -264,7 +267,7 @@ class Case(Table):
         return self.contact_on(self.surface(folder))
 
     def contact_on(self, surface: Surface) -> Contact:
-        """Make the unloaded contact with the given roughness. Raises the errors of `contact()`."""
+        """Make the unloaded contact on the given `surface`. Raises the same errors as `contact`."""
         needs.require(self.run_bytes(surface.grid), surface.grid)
         interface = self.interface
         return Contact(
@@ -280,7 +283,11 @@ class Case(Table):
         )
 
     def _adhesion_on(self, grid: Grid) -> Adhesion:
-        """The model of adhesion on `grid`: cohesive by default if the cells are fine enough."""
+        """The model of adhesion on `grid`.
+
+        The default is "cohesive" if the cells are fine enough and the other keys of [interface]
+        allow it, and "jkr" otherwise.
+        """
         interface = self.interface
         if interface.adhesion is not None:
             return interface.adhesion

@@ -29,25 +29,28 @@ from restitution.errors import CaseError, SurfaceError, shown
 from restitution.surfaces.generate import RoughnessKind
 
 _LARGEST = 2**22  # largest size of a case file (bytes)
-_DEEPEST = 32  # deepest nesting of tables and lists, and largest number of parts of a dotted key
-_NAMED = 3  # number of further wrong keys that a message names
+_DEEPEST = 32  # largest depth of nested tables and lists, and largest number of dots in a key
+_NAMED = 3  # largest number of further wrong keys that a message names
 _KINDS = (*get_args(RoughnessKind), "measured")
 
 
 def read_case(path: Path) -> tuple[Case, str]:
-    """Read and check a case file; return it with its text. Raises `CaseError`, naming the key."""
+    """Read and check a case file; return the case and the text of the file.
+
+    Raises a `CaseError` that names the file and the key.
+    """
     text = read_text(path)
     with naming(path):
         return parse_case(text), text
 
 
 def read_text(path: Path) -> str:
-    """Read the text of a case file. Raises `CaseError`, naming the file."""
+    """Read the text of a case file. Raises a `CaseError` that names the file."""
     try:
         kind = path.stat()
         if not (stat.S_ISREG(kind.st_mode) or stat.S_ISDIR(kind.st_mode)):
             raise CaseError(
-                f"{path}: is not a regular file (a device, pipe or socket); give a case file"
+                f"{path}: is not a regular file, but a device, pipe or socket; give a case file"
             )
         if kind.st_size > _LARGEST:
             raise CaseError(
@@ -110,7 +113,7 @@ def _check_depth(content: dict[str, Any]) -> None:
 
 
 def parse_case(text: str) -> Case:
-    """Check the text of a case file. Raises `CaseError`, naming the key."""
+    """Check the text of a case file. Raises a `CaseError` that names the key."""
     content = parse_toml(text)
     try:
         return Case.model_validate(content)
@@ -136,9 +139,10 @@ def problems_of(content: dict[str, Any]) -> dict[str, str]:
 
 
 def in_words(error: ValidationError, root: type[Table] = Case, before: str = "") -> str:
-    """Describe the problems of a file in one line: the first problem, and the other wrong keys.
+    """Describe the problems of a file in one line: the first problem, then the other wrong keys.
 
-    `root` is the table that was checked, and `before` the dotted path of its key in the file.
+    `root` is the class of the table that was checked. `before` is the dotted path of this table in
+    the file, and is empty for the whole file.
     """
     # Report unknown keys first, because a misspelt key is the usual reason for a missing key.
     problems = error.errors(include_url=False)
@@ -156,7 +160,7 @@ def _others(problems: list[Any]) -> str:
     return f" (also wrong: {', '.join(names[:_NAMED] + more)})"
 
 
-# Expected value for each type of pydantic error.
+# For each type of pydantic error, the expected value in words.
 _WORDS = {
     "model_type": "a table",
     "model_attributes_type": "a table",
@@ -174,8 +178,8 @@ _WORDS = {
 
 
 def _keys(problem: Any) -> list[str]:
-    # The path of a pydantic error also has union tags ("gaussian") and list indices; leave them
-    # out, because they are not keys of the file.
+    # The path of a pydantic error also contains tags of unions ("gaussian") and indices of lists.
+    # Leave them out, because they are not keys of the file.
     return [str(k) for k in problem["loc"] if isinstance(k, str) and k not in _KINDS]
 
 

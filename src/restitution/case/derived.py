@@ -26,16 +26,18 @@ def deepest_indentation(case: Case) -> float:
         return float(Hertz(pair.radius, pair.contact_modulus).indentation(last))
     assert pair.mass is not None  # checked by Case._check_masses
     # The yield pressure p_y of elastic bodies is infinite, but ThorntonNing needs a finite value.
-    # Use E*, a pressure that no contact reaches.
+    # Use the contact modulus, a pressure that no contact reaches.
     p_y = min(case.yielding().hardness, pair.contact_modulus)
     smooth = ThorntonNing(pair.radius, pair.contact_modulus, p_y)
     return float(smooth.indentation_from_velocity(last, pair.mass))
 
 
 def derived_quantities(case: Case, contact: Contact) -> dict[str, float | None]:
-    """Return reduced radius, contact modulus, reduced mass, first yield and predicted contact.
+    """Return the quantities that `summary.json` lists as derived from the case.
 
-    The keys end with the SI units. A quantity that does not apply to the case is None.
+    They describe the pair, first yield, adhesion, and the predicted contact on the grid. The key of
+    a quantity with a unit ends with its SI unit. A quantity that does not apply to the case is
+    None.
     """
     pair, p_y = contact.pair, contact.hardness
     if contact.periodic:

@@ -12,25 +12,27 @@ import math
 from restitution.numerics import memory
 from restitution.numerics.grid import Grid
 
-_PROCESS = 250e6  # bytes for the program, its libraries and figures
+_PROCESS = 250e6  # bytes for the program, its libraries and its plots
 
-# Bytes per node of the grid, unless stated otherwise.
+# Bytes per node of the grid, unless stated otherwise. A twin is a random surface with the
+# statistics of a scan (see `surfaces.twin`).
 _SURFACE = 75.0  # a generated surface
 _SKEWED = 115.0  # a generated surface with skewness or kurtosis
 _MARGIN = 60.0  # per node of the enlarged grid from which a non-periodic surface is cut
 _SCAN = 60.0  # per pixel of a scan: reading, levelling and its spectrum
-_TWIN = 75.0  # a statistical twin of a scan
 _BAND = 90.0  # per node of the grid on which the shortest waves of a twin are adjusted
 _DESCRIBED = 150.0  # autocorrelation, spectrum and page of `restitution surface`
 
-# A run needs the larger of these values for its models of plasticity and of adhesion. A run with an
-# attraction of finite range ("cohesive") keeps the pressure and the displacement of some 100 states
-# of unloading (16 bytes for each state), besides the arrays of the solver.
+# Bytes per node for each model of plasticity and of adhesion. A run needs the larger of the values
+# for its two models. A run with an attraction of finite range ("cohesive") keeps the pressure and
+# the displacement of some 100 states of unloading (16 bytes per node and state), besides the arrays
+# of the solver.
 _PLASTICITY = {"none": 115.0, "equilibrium": 140.0, "expanding-cavity": 190.0, "truncated": 190.0}
 _ADHESION = {"none": 0.0, "jkr": 150.0, "cohesive": 1800.0}
 
-# A non-periodic surface is generated on an enlarged grid with at most about this many times the
-# nodes (`generate._enlarged`: twice the nodes along each axis, rounded up to a fast FFT length).
+# A non-periodic surface is cut from a surface on an enlarged grid (`generate._enlarged`). The
+# number of nodes along each axis is at most doubled and then rounded up to a fast FFT length. The
+# enlarged grid therefore has at most about this many times the nodes of the grid.
 _ENLARGED = 4.0
 
 
@@ -51,7 +53,7 @@ def require(needed: float, grid: Grid) -> None:
 def run_bytes(grid: Grid, *, plasticity: str, adhesion: str) -> float:
     """Memory (bytes) of a run on `grid`, without making the surface.
 
-    `plasticity` and `adhesion` are the models, or "none" for elastic bodies and without adhesion.
+    `plasticity` and `adhesion` are names of models. "none" means elastic bodies, or no adhesion.
     """
     return _PROCESS + max(_PLASTICITY[plasticity], _ADHESION[adhesion]) * nodes_of(grid)
 
@@ -70,9 +72,9 @@ def generated_bytes(grid: Grid, *, normal: bool, periodic: bool) -> float:
 
 
 def measured_bytes(grid: Grid, scan: Grid, *, twin: bool) -> float:
-    """Memory (bytes) to place a scan on `grid`; `scan` is the grid of its pixels.
+    """Memory (bytes) for placing a scan on `grid`; `scan` is the grid of its pixels.
 
-    If `twin` is true, a random surface with the statistics of the scan is made instead.
+    If `twin` is true, a twin of the scan is made instead.
     """
     size = _PROCESS + _SURFACE * nodes_of(grid) + _SCAN * nodes_of(scan)
     return size + _BAND * _band_nodes(grid, scan) if twin else size
@@ -81,7 +83,7 @@ def measured_bytes(grid: Grid, scan: Grid, *, twin: bool) -> float:
 def _band_nodes(grid: Grid, scan: Grid) -> float:
     """Upper estimate of the nodes of the finest grid on which waves of a twin are adjusted.
 
-    A twin is a random surface with the statistics of a scan (see `surfaces.twin`).
+    `grid` is the grid of the twin, and `scan` the grid of the pixels of the scan.
     """
     repeats = [max(1.0, s / g) for s, g in zip(scan.size, grid.size, strict=True)]
     ratio = min(h / pixel for h, pixel in zip(grid.spacing, scan.spacing, strict=True))

@@ -8,7 +8,7 @@ from restitution.case.case import Case
 from restitution.case.roughness import GeneratedRoughness
 from restitution.theory import JKR, Hertz
 
-# Typical work of adhesion (J/m²), within the range 0.01 to 0.09 of Ghanbarzadeh et al. (2019).
+# Typical work of adhesion (J/m²). Ghanbarzadeh et al. (2019) state a range of 0.01 to 0.09 J/m².
 TYPICAL_ADHESION = 0.05
 # Ratio of impact velocity V to sticking velocity V_s below which adhesion matters. Adhesion lowers
 # the square of COR by (V_s/V)² (Thornton and Ning 1998). At V = 8.5 V_s, it lowers a COR of 0.7 by
@@ -17,7 +17,7 @@ _MATTERS = 8.5
 
 
 def omissions(case: Case) -> list[str]:
-    """Make a warning for each omitted key that is replaced by a default or ideal value."""
+    """Make a warning for each omitted key whose default may be wrong for the case."""
     return list(filter(None, (_default_yield(case), _no_adhesion(case), _no_shortest_wave(case))))
 
 
@@ -32,8 +32,9 @@ def _default_yield(case: Case) -> str | None:
         else f"at the pressure {1e-6 * yielding.yield_pressure:.4g} MPa ({yielding.source})"
     )
     return (
-        f"interface.yield_strength is left out: the contact yields {how}; write a strength or a "
-        'pressure, or yield_pressure = "elastic" for bodies that do not yield'
+        f"interface.yield_strength is left out: the contact yields {how}; give "
+        'yield_strength or yield_pressure, or yield_pressure = "elastic" for bodies that do not '
+        "yield"
     )
 
 
@@ -47,9 +48,9 @@ def _no_adhesion(case: Case) -> str | None:
     if _lowest_velocity(case, pair.mass) >= below:
         return None
     return (
-        "interface.work_of_adhesion is left out, so there is no adhesion: a typical value of "
-        f"{TYPICAL_ADHESION} J/m2 would change COR by more than 0.01 below about {below:.2g} m/s "
-        '(smooth bodies); give it, or "0 J/m^2"'
+        "interface.work_of_adhesion is left out, so there is no adhesion: at velocities below "
+        f"about {below:.2g} m/s, a typical value of {TYPICAL_ADHESION} J/m2 would change COR of "
+        'smooth bodies by more than 0.01; give a value, or "0 J/m^2"'
     )
 
 
@@ -72,8 +73,8 @@ def _no_shortest_wave(case: Case) -> str | None:
             and part.shortest is None
         ):
             return (
-                f'roughness.shortest is left out: kind = "{part.kind}" has no shortest wave, so '
-                "the shortest wave is two grid spacings; COR of shallow contacts depends on the "
-                "shortest wave, and total_error does not include this; give roughness.shortest"
+                f'roughness.shortest is left out: the shortest wave of kind = "{part.kind}" is '
+                "then two grid spacings; COR of shallow contacts depends on the shortest wave, and "
+                "total_error does not include this influence; give roughness.shortest"
             )
     return None

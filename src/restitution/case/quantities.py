@@ -12,16 +12,16 @@ from pydantic import BeforeValidator
 
 from restitution.errors import shown
 
-# A quantity is one number followed by one unit, an expression of names, powers, * and /. Arithmetic
-# with numbers is excluded, so that a case file cannot start long calculations in the unit parser. A
-# digit directly after a name is a power: "g/cm3" is g/cm^3.
+# A quantity is one number followed by a unit. The unit is an expression of names, powers, * and /.
+# Arithmetic with numbers is excluded, so that a case file cannot start long calculations in the
+# unit parser. A digit directly after a name is a power: "g/cm3" is g/cm^3.
 _NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?"
 _UNIT = r"[^\W\d]+(?:\s*(?:\^|\*\*)\s*-?\d|\d)?"
 _POWER = re.compile(r"(?<=[^\W\d])(\d)")
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*((?:{_UNIT})(?:\s*[*/·]\s*{_UNIT})*)\s*", re.UNICODE)
 
-# Largest length of a quantity (characters). The patterns and the unit parser would take too long
-# for longer texts.
+# Largest number of characters of a quantity. The patterns and the unit parser would need too much
+# time for longer texts.
 LONGEST = 100
 
 _EXAMPLES = {
@@ -77,7 +77,7 @@ def _registry() -> pint.UnitRegistry[float]:
 
 
 def unit_factors() -> dict[str, dict[str, float]]:
-    """The usual units that convert to each SI unit, with the factors of the conversion.
+    """For each SI unit, its usual units with their factors of conversion.
 
     For example, `unit_factors()["m"]["um"]` is 1e-6.
     """
@@ -130,7 +130,10 @@ def _other_case(name: str, unit: str) -> str | None:
 
 
 def read_positive(value: Any, unit: str, *, or_zero: bool = False) -> float:
-    """Convert like `read_quantity`; require a plausible positive value, or zero if `or_zero`."""
+    """Convert as `read_quantity` does, and require a plausible positive value.
+
+    `or_zero` also allows zero.
+    """
     result = read_quantity(value, unit)
     if or_zero and result == 0:
         return 0.0
@@ -150,11 +153,12 @@ def read_positive(value: Any, unit: str, *, or_zero: bool = False) -> float:
 
 
 def read_impact_angle(value: Any) -> float:
-    """Convert an angle of impact from the normal to rad; require 0 to below 90 degrees."""
+    """Convert an angle of impact, measured from the normal, to rad; require 0 ≤ angle < 90°."""
     result = read_quantity(value, "rad")
     if not 0 <= result < math.pi / 2 * (1 - 1e-12):
         raise ValueError(
-            f"{shown(value)} is not an angle of impact; give 0 to below 90 degrees from the normal"
+            f"{shown(value)} is not an angle of impact; give an angle from the normal of at least "
+            "0 and less than 90 degrees"
         )
     return result
 

@@ -79,7 +79,10 @@ Seed = Annotated[int, Field(ge=0, lt=2**63)]
 
 @contextmanager
 def _naming(keys: Mapping[str, str]) -> Iterator[None]:
-    """Reword errors of `surfaces` for the case file; `keys` maps arguments to keys of the file."""
+    """Reword errors of the package `surfaces` in terms of the case file.
+
+    `keys` maps arguments of functions to keys of the file.
+    """
     try:
         yield
     except RefusedSurfaceError as error:
@@ -106,7 +109,7 @@ class GeneratedRoughness(Table):
     periodic: bool = True
 
     def variant(self, number: int) -> Self:
-        """Return the table of a single other surface with the same statistics; 0 keeps the seed."""
+        """Return the table of one other surface, with `number` added to the seed."""
         return self.model_copy(update={"seed": self.seed + number, "realisations": 1})
 
     def surface(self, grid: Grid, _: Path, factor: int = 1) -> Surface:
@@ -158,13 +161,19 @@ class MeasuredRoughness(Table):
         return self
 
     def variant(self, number: int) -> Self:
-        """Return the table of a single other twin, or another place on the scan; 0 keeps both."""
+        """Return the table of one other surface.
+
+        `number` is added to the seed of a twin, or to the place on the scan.
+        """
         if self.seed is None:  # only a twin has a seed
             return self.model_copy(update={"place": self.place + number, "realisations": 1})
         return self.model_copy(update={"seed": self.seed + number, "realisations": 1})
 
     def scan(self, folder: Path) -> Surface:
-        """Read, clean and level the scan; `file` is relative to `folder`."""
+        """Read, clean and level the scan, and move its point `place` to the middle.
+
+        The file name is relative to `folder`.
+        """
         with _naming({}):
             scan = read_surface(
                 folder / self.file, channel=self.channel, size=self.size, undefined=self.undefined
@@ -200,10 +209,7 @@ class MeasuredRoughness(Table):
             return kept(asked, lambda: self._placed(scan, grid, factor))
 
     def _placed(self, scan: Surface, grid: Grid, factor: int) -> Surface:
-        """Place the scan on cells `factor` times smaller than those of `grid`.
-
-        If requested, the scan is extended.
-        """
+        """Place the scan, extended if requested, on cells `factor` times smaller than in `grid`."""
         if self.extend == "twin":
             # The waves of a twin do not depend on the grid, so evaluate them on the fine grid.
             placed, steps = extend(scan, divided(grid, factor), "twin", seed=self.seed), factor

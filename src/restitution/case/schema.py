@@ -23,7 +23,8 @@ from restitution.errors import shown
 from restitution.numerics.grid import Grid
 
 FACTORS = (1, 2, 4, 8, 16, 32, 64)  # allowed refinement factors
-MOST_NODES = 2**27  # limit for a grid; more nodes do not fit into the memory of common machines
+# Largest number of nodes of a grid. More nodes do not fit into the memory of common machines.
+MOST_NODES = 2**27
 MOST_STEPS = 10_000  # largest number of depths of a curve
 _SAME = 1e-9  # largest relative difference of normal velocities that count as equal
 
@@ -105,7 +106,7 @@ Quantity = TypeVar("Quantity")
 
 
 class Series(Table, Generic[Quantity]):
-    """A table that prescribes depths, such as `[load]`: a range with steps, or a list of values."""
+    """A table that prescribes the depths, such as `[load]`: a range with steps, or a list."""
 
     from_: Annotated[Quantity | None, Field(alias="from")] = None
     to: Quantity | None = None
@@ -154,8 +155,9 @@ _Many = Field(min_length=1, max_length=MOST_STEPS)
 class ImpactTable(Series[Velocity]):
     """The table `[impact]`: a range of velocities with steps, or the list `velocity`.
 
-    If `angle` or `spin` is given, oblique impacts are computed, too: one for each velocity of the
-    centres and each angle from the normal. `spin` lists the spin of the first body, or of both.
+    If `angle` or `spin` is given, oblique impacts are computed, too: one for each combination of a
+    velocity of the centres and an angle from the normal. `spin` lists the spin of the first body,
+    or the spins of both bodies.
     """
 
     values: Annotated[
@@ -172,8 +174,8 @@ class ImpactTable(Series[Velocity]):
     def _few_enough(self) -> Self:
         if self.spin is not None and len(self.spin) > 2:
             raise ValueError(
-                f"spin: {len(self.spin)} values for two bodies; give one value (of the first "
-                "body), or two"
+                f"spin: {len(self.spin)} values for two bodies; give one value (for the "
+                "first body), or two"
             )
         impacts = len(self.velocities()) * len(self.angles())
         if impacts > MOST_STEPS:

@@ -76,6 +76,7 @@ def load_cohesive(
         return _move(start, indentation, residual, accuracy)
     limit, convolutions = pressure_bound(contact, -math.inf, residual)
     begin = rigid_start(contact, limit=limit, residual=residual)
+    convolutions += begin.convolutions
     if begin.indentation > indentation:
         return replace(begin, convolutions=convolutions)
     end = _move(begin, indentation, residual, accuracy)

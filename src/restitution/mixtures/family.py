@@ -1,10 +1,10 @@
-"""Pairs of two components of a mixture: their particles, and the case for a reduced radius.
+"""Pairs of particles from two components of a mixture, and the case for a reduced radius.
 
 Smooth spheres without adhesion obey a scaling law. With lengths in units of the reduced radius R*,
-the contact depends only on W/R*³, where W is the loading work; the masses and the two radii have no
-other influence. Roughness and adhesion have lengths that do not scale with R*. So the laws of all
-pairs of two components are one family e(W/R*³, R*). With the reduced mass m* and the impact
-velocity V, W/R*³ is ½ κ V² with κ = m*/R*³.
+the contact depends only on W/R*³, where W is the loading work. The masses and the two radii have no
+other influence. Roughness and adhesion have lengths that do not scale with R*. Therefore, COR of
+all pairs of two components is one function of W/R*³ and R*, and these pairs are called a family.
+With the reduced mass m* and the impact velocity V, W/R*³ is ½ κ V² with κ = m*/R*³.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ _PER_WAVE = 5  # number of nodes per correlation length, or per shortest wavelen
 
 @dataclass(frozen=True)
 class Meeting:
-    """Two particles that can meet, with their reduced radius R* (m) and mass m* (kg)."""
+    """Two particles that can meet, with their reduced radius R* (m) and reduced mass m* (kg)."""
 
     first: Particle
     second: Particle
@@ -50,7 +50,7 @@ class Meeting:
 
 @dataclass(frozen=True)
 class Family:
-    """All pairs of the components `first` and `second` of a mixture."""
+    """All pairs of one particle of the component `first` and one of the component `second`."""
 
     mixture: Mixture
     first: Component
@@ -63,7 +63,7 @@ class Family:
 
     @cached_property
     def meetings(self) -> tuple[Meeting, ...]:
-        """All pairs of sizes that can meet, without repetition."""
+        """All pairs of particle sizes of the two components, each pair once."""
         ours, theirs = _particles(self.first), _particles(self.second)
         if self.second is self.first:
             return tuple(
@@ -92,7 +92,7 @@ class Family:
 
     @cached_property
     def _grid(self) -> dict[str, Any]:
-        """Make the table `[grid]`; like the surface, it is the same for all reduced radii."""
+        """Make the table `[grid]`. All reduced radii have the same grid and the same surface."""
         if self.mixture.grid is not None:
             return {"refine": "auto", **self.mixture.grid}
         probe = {"nodes": 64, "spacing": "1 um"}
@@ -104,7 +104,8 @@ class Family:
             raise CaseError(
                 f"grid: the waves of {self.name} need cells of {1e6 * spacing:.3g} um, and the "
                 f"contact needs a grid of {1e6 * width:.3g} um, which would have {nodes} nodes per "
-                "edge; give the table [grid], fewer velocities, or sizes that differ less"
+                f"edge (at most {_MOST_NODES} are allowed); give the table [grid], fewer "
+                "velocities, or sizes that differ less"
             )
         return {"nodes": nodes, "spacing": f"{spacing!r} m", "refine": "auto"}
 
@@ -146,9 +147,9 @@ class Family:
 
 
 def families(mixture: Mixture) -> list[Family]:
-    """Make the families of a mixture. Raises `CaseError` if the case of a pair is invalid."""
+    """Make the families of a mixture. Raises `CaseError` if the case of a family is invalid."""
     pairs = itertools.combinations_with_replacement(mixture.components, 2)
-    # Walls follow the materials, so that a wall is always the second component.
+    # `mixture.components` lists walls after materials, so a wall is always the second of a pair.
     found = [Family(mixture, first, second) for first, second in pairs if not first.wall]
     for family in found:
         for radius in (family.radii[0], family.radii[-1]):
@@ -157,7 +158,10 @@ def families(mixture: Mixture) -> list[Family]:
 
 
 def _steps(start: float, end: float, step: float) -> list[float]:
-    """Velocities from `start` (excluded) to `end` in ratios of about `step`; empty if equal."""
+    """Velocities from `start` (excluded) to `end`, with successive ratios of about `step`.
+
+    The result is empty if `start` and `end` are equal.
+    """
     distance = math.log(end / start) / math.log(step)
     if distance < 1e-6:
         return []
@@ -166,9 +170,9 @@ def _steps(start: float, end: float, step: float) -> list[float]:
 
 
 def _another(table: dict[str, Any], others: list[dict[str, Any]]) -> dict[str, Any]:
-    """Make the roughness table of the second body from `table`, for an independent surface.
+    """Return a roughness table for the second body: `table`, changed to an independent surface.
 
-    The seed, or the place in the scan, differs from those in `others`. With the same seed, two
+    The seed, or the place on the scan, differs from those in `others`. With the same seed, two
     surfaces would have the same phases, and their waves would add up.
     """
     random = table.get("kind") != "measured" or table.get("extend") == "twin"

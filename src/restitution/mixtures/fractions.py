@@ -9,7 +9,7 @@ from typing import Any
 from restitution.errors import CaseError
 
 KEYS = ("mass_fractions", "number_fractions")
-_OFF = 0.02  # largest accepted difference of the sum from 1 (fractions are often rounded)
+_OFF = 0.02  # largest difference of the sum of fractions from 1; they are often rounded
 
 
 def number_fractions(
@@ -17,10 +17,21 @@ def number_fractions(
 ) -> tuple[float, ...]:
     """Remove the fractions from the `table` of a material, and return fractions by number.
 
-    The sum of the result is 1. `sizes` is the value of the key `radius`, and `radii` (m) are in the
-    order of the file. Without fractions, every size has the same number of particles. All sizes
-    have the same density, so a mass fraction is proportional to the number times R³. Raises a
-    `CaseError` that names the key.
+    The sum of the result is 1. Without fractions, every size has the same number of particles. All
+    sizes have the same density, so a mass fraction is proportional to the number of particles times
+    the cube of their radius.
+
+    Args:
+        key: Dotted path of the table in the mixture file, for error messages.
+        table: Table of the material. The key of the fractions is removed from it.
+        sizes: Value of the key `radius`.
+        radii: Radii of the sizes (m), in the order of the file.
+
+    Returns:
+        Fraction by number of each size, in the order of `radii`.
+
+    Raises:
+        CaseError: The fractions are invalid. The message names the key.
     """
     given = [name for name in KEYS if name in table]
     if len(given) > 1:
@@ -54,5 +65,5 @@ def _checked(where: str, values: Any, count: int) -> list[float]:
         raise CaseError(f"{where}: has {len(values)} values for {count} sizes")
     total = math.fsum(values)
     if abs(total - 1) > _OFF:
-        raise CaseError(f"{where}: the sum is {total:g}, and should be 1")
+        raise CaseError(f"{where}: the sum is {total:g}, but should be 1")
     return [float(value) for value in values]

@@ -1,9 +1,9 @@
 """Compute all laws of a mixture from as few runs as the error of interpolation allows.
 
 All pairs of two components (materials or walls) are a family. Each family is first computed at its
-smallest, a middle and its largest reduced radius. If the interpolation error of a pair exceeds the
-limit, another radius is computed, in the middle between the neighbouring computed radii. This is
-repeated until no error exceeds the limit.
+smallest, a middle and its largest reduced radius. If the interpolation error of a pair exceeds its
+limit, another radius is computed, in the middle between the neighbouring computed radii. This step
+is repeated until no error exceeds its limit.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ Progress = Callable[[Tally], None]
 
 @dataclass(frozen=True)
 class PairLaw:
-    """The law of one pair of particles, and its interpolation error (0 if `computed`)."""
+    """The law of one pair of particles, and its interpolation error of COR (0 if `computed`)."""
 
     law: Law
     computed: bool
@@ -47,8 +47,8 @@ def run_mixture(
     """Compute the law of every pair of `mixture`.
 
     Paths of scans are relative to `folder`. Runs are stored as the cases of a study in `out`, so
-    that an interrupted mixture can be resumed. Raises `OutputError` if a run fails, because some
-    pairs would then have no law.
+    that an interrupted computation can be resumed. Raises `OutputError` if a run fails, because
+    some pairs would then have no law.
     """
     found = families(mixture)
     cases: dict[tuple[str, float], SweptCase] = {}
@@ -99,9 +99,10 @@ def _first_radii(family: Family) -> list[float]:
 
 
 def _more_radii(computed: Computed) -> Iterator[float]:
-    """Yield reduced radii (m) to compute next.
+    """Yield the reduced radii (m) to compute next.
 
-    Between two neighbouring computed radii, one radius is chosen if an error there is too large.
+    One radius is chosen between two neighbouring computed radii if the interpolation error of a
+    pair between them is too large.
     """
     family = computed.family
     poor = {meeting.radius for meeting in family.meetings if not computed.is_good(meeting)}

@@ -24,10 +24,11 @@ _T = TypeVar("_T", bound=Table)
 
 
 class Sizes(Table):
-    """A table `radius` of a material: bins with edges, or a distribution divided into bins.
+    """A table `radius` of a material: bins with edges, or a distribution that is divided into bins.
 
-    Each bin counts as one size. Its radius is the geometric mean of its edges or, for a
-    distribution, the median of the bin. The bins of a distribution hold equal numbers of particles.
+    Each bin counts as one size. The radius of this size is the geometric mean of the edges or, for
+    a distribution, the median of the bin. All bins of a distribution hold the same number of
+    particles.
     """
 
     edges: Annotated[list[Length] | None, Field(min_length=2, max_length=MOST_SIZES + 1)] = None
@@ -41,7 +42,7 @@ class Sizes(Table):
         lognormal = (self.median, self.geometric_std)
         given = [self.edges is not None, self.bins is not None, lognormal != (None, None)]
         if sum(given) != 1 or (given[2] and None in lognormal):
-            raise ValueError("give one of edges, bins, or median with geometric_std (log-normal)")
+            raise ValueError("give edges, or bins, or median and geometric_std (log-normal)")
         if self.edges is not None and not (np.diff(self.edges) > 0).all():
             raise ValueError("edges: must increase")
         for low, high in self.bins or []:
@@ -70,9 +71,13 @@ class Sizes(Table):
 class Component:
     """A material with its sizes, or a wall.
 
-    `body` has the keys of the table `[first]` of a case, without `radius`, and `material` has their
-    checked values. `roughness` contains the roughness tables. `radii` (m) increase and are empty
-    for a wall. `fractions` are the fractions by number of the sizes; their sum is 1.
+    Attributes:
+        name: Name of the component in the mixture file.
+        body: Table `[first]` of a case as written in the file, without `radius`.
+        material: The checked values of `body`.
+        roughness: Roughness tables.
+        radii: Radii of the sizes (m), increasing; empty for a wall.
+        fractions: Fractions by number of the sizes, with the sum 1; empty for a wall.
     """
 
     name: str
@@ -89,7 +94,7 @@ class Component:
 
 
 class _File(Table):
-    """The keys of a mixture file, except those of materials and walls."""
+    """The keys of a mixture file, except the tables of materials and walls."""
 
     title: str = ""
     interpolation_error: Annotated[float, Field(gt=0, lt=1)] = 0.01
@@ -103,8 +108,8 @@ class _File(Table):
 class Mixture:
     """A checked mixture file.
 
-    `interfaces` and `grid` are tables as written in the file. The key of an interface holds the
-    names of its two components; the key of the interface of all other pairs is empty.
+    `grid` is the table as written in the file. `interfaces` maps the names of two components to the
+    table `[interface]` of their pairs. The empty key maps to the table for all other pairs.
     """
 
     title: str
@@ -196,20 +201,22 @@ def _component(key: str, name: str, table: Any) -> Component:
     fractions = number_fractions(key, body, sizes, radii)
     material = _validated(BodyTable, {**body, "radius": "flat"}, key)
     if radii and material.density is None:
-        raise CaseError(f"{key}.density: is missing; the impact velocity depends on it")
+        raise CaseError(
+            f"{key}.density: is missing; give it, because the impact velocity depends on it"
+        )
     order = sorted(range(len(radii)), key=radii.__getitem__)
     increasing, shares = (tuple(values[k] for k in order) for values in (radii, fractions))
     return Component(name, body, material, rough, increasing, shares)
 
 
 class _Rough(Table):
-    """A model to check the roughness of a component."""
+    """A table that is used only to check the roughness tables of a component."""
 
     roughness: list[Roughness]
 
 
 class _Radii(Table):
-    """A model to check a list of radii."""
+    """A table that is used only to check a list of radii."""
 
     radius: Annotated[list[Length], Field(min_length=1, max_length=MOST_SIZES)]
 
@@ -225,7 +232,7 @@ def _radii(key: str, sizes: Any) -> tuple[float, ...]:
 
 
 def _validated(model: type[_T], table: dict[str, Any], key: str = "") -> _T:
-    """Check a `table`, whose dotted path in the file is `key`. Raises `CaseError`."""
+    """Check `table` against `model`; `key` is its dotted path in the file. Raises `CaseError`."""
     try:
         return model.model_validate(table)
     except ValidationError as error:

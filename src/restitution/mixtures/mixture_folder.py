@@ -20,7 +20,7 @@ RUNS, PAIRS = "runs", "pairs.csv"
 def open_mixture_folder(out: Path, mixture: Mixture, *, resume: bool) -> StudyFolder:
     """Open the folder in `out` that holds the runs of `mixture`.
 
-    Raises `OutputError` if `out` holds something else, if there is nothing to resume, or if `out`
+    Raises `OutputError` if `out` holds other files, if there is nothing to resume, or if `out`
     cannot be written.
     """
     prepare_folder(out, MIXTURE_FILE, mixture.text, resume=resume, what="mixture")
@@ -34,10 +34,10 @@ def open_mixture_folder(out: Path, mixture: Mixture, *, resume: bool) -> StudyFo
 def write_mixture(
     out: Path, mixture: Mixture, pairs: Sequence[PairLaw], runs: int, seconds: float
 ) -> list[str]:
-    """Write the laws of all `pairs`, their table and the summary; return the names in `out`.
+    """Write the laws of all `pairs`, a table of these laws, and the summary.
 
-    `runs` is the number of computed curves, and `seconds` the time for computing them. Raises
-    `OutputError`.
+    `runs` is the number of computed curves, and `seconds` the time for computing them. Returns the
+    names of the files and folders in `out`. Raises `OutputError`.
     """
     with writing(out):
         shutil.rmtree(out / LAWS, ignore_errors=True)
@@ -83,7 +83,10 @@ def write_mixture(
 
 
 def condensed_warnings(pairs: Sequence[PairLaw]) -> list[str]:
-    """List each warning once, with its pairs; texts that differ only in numbers count as one."""
+    """List each warning once, with its pairs.
+
+    Warnings that differ only in numbers count as one.
+    """
     found: dict[str, list[tuple[str, str]]] = {}
     for pair in pairs:
         family = f"{pair.law.first.name}+{pair.law.second.name}"

@@ -1,9 +1,9 @@
 """Laws of all pairs of a family, from the laws at a few reduced radii R*.
 
-At equal W/R*³ (with the loading work W), the ratio W_u/W_l of unloading to loading work is
-interpolated in ln R* by a monotone cubic. The error is estimated as in `RatioCurve`: 1.5 times the
-larger leave-one-out residual of the two neighbouring radii. Because a single residual can be zero
-by chance, the largest estimate over neighbouring velocities is used.
+At equal W/R*³, where W is the loading work, the ratio of unloading work to W is interpolated in
+ln R* by a monotone cubic. The error is estimated as in `RatioCurve`: 1.5 times the larger
+leave-one-out residual of the two neighbouring radii. A single residual can be zero by chance.
+Therefore, the largest estimate at the velocity itself and the two neighbouring velocities is used.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from restitution.mixtures.family import Family, Meeting
 
 Array = NDArray[np.float64]
 
-# An interpolation error of COR above the limit of the mixture is accepted if it is at most _SHARE
-# times the error of the computed laws, and at most _MOST.
+# An interpolation error of COR above the limit given for the mixture is still accepted if it is at
+# most _SHARE times the error of the computed laws, and at most _MOST.
 _SHARE, _MOST = 0.25, 0.05
 _SAME = 1e-9  # largest relative difference of radii that count as equal
 
@@ -47,9 +47,9 @@ class Computed:
     def is_good(self, meeting: Meeting) -> bool:
         """Whether the law of the pair is accurate enough without computing another radius.
 
-        At every velocity, the error due to interpolation in R* must not exceed the larger of two
-        limits. One is the limit of the mixture. The other is a quarter of the error of the computed
-        laws, but not more than `_MOST`.
+        At every velocity, the error of COR due to interpolation in R* must not exceed the larger of
+        two limits. One is the `interpolation_error` given for the mixture. The other is a quarter
+        of the error of the computed laws, but not more than 0.05.
         """
         points, errors = self._points(meeting), self.interpolation_errors(meeting)
         limit = self.family.mixture.interpolation_error
@@ -107,7 +107,7 @@ class Computed:
         )
 
     def _curves(self, meeting: Meeting) -> list[RatioCurve]:
-        """Make a curve of W_u/W_l against R* from all laws, for each velocity of the mixture."""
+        """Make a curve of the ratio of unloading to loading work against R*, for each velocity."""
         ratios = (
             np.array([law.curve().at(_of(law, V, meeting)) for law in self.laws], dtype=float)
             for V in self.family.mixture.velocities
@@ -149,7 +149,8 @@ class Computed:
 def _of(law: Law, V: float, meeting: Meeting) -> float:
     """Velocity (m/s) at which `law` has the same W/R*³ as the pair `meeting` at V (m/s).
 
-    A velocity that is outside the range of `law` by at most 1e-3 (relative) is moved into it.
+    W is the loading work. If the velocity is outside the range of `law` by at most 1e-3 (relative),
+    the nearest velocity of this range is returned.
     """
     velocity = V * math.sqrt(meeting.kappa / (law.mass / law.radius**3))
     near = law.lowest * (1 - 1e-3) <= velocity <= law.highest * (1 + 1e-3)
@@ -172,10 +173,10 @@ def _error_of(curve: RatioCurve, radius: float, near: list[RatioCurve]) -> float
 
 
 def _column_at(law: Law, name: str, velocity: float) -> float:
-    """Interpolate the field `name` at `velocity` (m/s) between the points.
+    """Interpolate the field `name` of the points of `law` at `velocity` (m/s).
 
-    Between points, the field is a power of the velocity V, or linear in ln V if any of its values
-    is not positive.
+    Between two points, the field is a power of the velocity. If any value of the field is not
+    positive, the field is linear in the logarithm of the velocity instead.
     """
     L, values = np.log(law.column("velocity")), law.column(name)
     if (values <= 0).any():

@@ -1,7 +1,7 @@
 """SHA-256 checksums of the files of a folder, so that damaged files are not read as results.
 
 The checksums are in the file `SHA256SUMS`, in the format of the program `sha256sum`. If this file
-is missing (removed or never written), files are not checked.
+is missing (removed or never written), the other files are not checked.
 """
 
 from __future__ import annotations

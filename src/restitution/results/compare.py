@@ -1,4 +1,4 @@
-"""Compare COR, with errors, and the inputs of two runs or two studies."""
+"""Compare two runs or two studies: COR with its errors, and the inputs."""
 
 from __future__ import annotations
 
@@ -21,12 +21,16 @@ _SAME = 1e-9  # largest relative difference of two depths that count as equal
 
 @dataclass(frozen=True)
 class Comparison:
-    """The comparison of two results a and b: a table, the inputs that differ, and notes.
+    """The comparison of two runs or studies, a and b.
 
-    A row contains the swept values of a study's case, `max_indentation_m`, `restitution_a`,
-    `restitution_b`, `difference` (b − a), `error` (of the difference, from the errors of both),
-    `significant` (the difference exceeds this error), `resolved` (both grids resolve the contact),
-    and `force_ratio` (b/a).
+    Attributes:
+        rows: A row for each compared depth. It contains `max_indentation_m`, `restitution_a`,
+            `restitution_b`, the `difference` of COR (b minus a), and the `error` of this
+            difference, combined from the errors of both. `significant` says whether the difference
+            exceeds this error, and `resolved` whether both grids resolve the contact. `force_ratio`
+            is the force of b divided by that of a. Rows of studies also contain the swept values.
+        inputs: The keys of the input files whose values differ, with the values in a and in b.
+        notes: Remarks on the comparison.
     """
 
     rows: list[dict[str, Any]]
@@ -53,9 +57,7 @@ def _kind(folder: Path) -> str:
         return "study"
     if (folder / "curve.csv").is_file():
         return "run"
-    raise OutputError(
-        f"{folder}: holds no results of a run or study; give the results folder of one"
-    )
+    raise OutputError(f"{folder}: holds no results of a run or study; give a results folder")
 
 
 def _studies(a: Path, b: Path) -> Comparison:
@@ -97,14 +99,17 @@ def _curves(
         notes.append("depths of the first result outside the range of the second are left out")
     if any(math.isnan(row["discretisation_error"]) for row in (*a, *b)):
         notes.append(
-            "errors do not include the error of the grid where discretisation_error is empty "
-            "(set total_error = true, or use restitution converge)"
+            "where discretisation_error is empty, the errors do not include the error due to the "
+            "grid (set total_error = true, or use restitution converge)"
         )
     return rows, notes
 
 
 def _weights(depths: NDArray[np.float64], depth: float) -> dict[int, float]:
-    """Weights of the rows of a curve for interpolation at `depth`; empty outside its range."""
+    """Weights, by row number, of the rows of a curve for interpolation at `depth`.
+
+    The result is empty if `depth` is outside the range of `depths`.
+    """
     same = np.flatnonzero(np.abs(depths - depth) <= _SAME * depth)
     if same.size:
         return {int(same[0]): 1.0}
@@ -147,7 +152,7 @@ def _error(row: _Row) -> float:
 def _complete_cases(
     study: StudyResults,
 ) -> dict[tuple[tuple[str, str], ...], list[dict[str, float]]]:
-    """Rows of the complete cases of a study, with the swept values as keys."""
+    """Rows of the curve of each complete case of a study, by its swept values."""
     return {
         tuple(case.swept.items()): case.curve.rows
         for case in study.cases
@@ -156,7 +161,10 @@ def _complete_cases(
 
 
 def _run(folder: Path) -> tuple[list[dict[str, float]], str]:
-    """Rows and case text of a run; the text is empty if a killed run left only its curve."""
+    """Rows of the curve and text of the case of a run.
+
+    The text is empty if the run was killed and left only its curve.
+    """
     run = RunResults(folder)
     if not (folder / "summary.json").exists() and not (folder / "results.nc").exists():
         return run.curve.rows, ""

@@ -15,7 +15,7 @@ from types import FrameType
 _NAMES = ("SIGINT", "SIGTERM", "SIGHUP")  # Windows has no SIGHUP
 _Handler = Callable[[int, FrameType | None], object]
 
-_depth = 0  # number of nested `hold_signals`
+_depth = 0  # number of nested `hold_signals` blocks that are active
 _received: list[int] = []
 _handlers: dict[int, _Handler] = {}
 

@@ -18,7 +18,7 @@ from restitution.results.writer import writing
 def locked(folder: Path) -> Iterator[None]:
     """Make `folder`, and lock it against other processes during the `with` body.
 
-    At the end the lock file is removed. A new folder that is still empty is also removed. Raises
+    At the end, the lock file is removed, and so is a new folder that is still empty. Raises
     `OutputError` if another process holds the lock or the folder cannot be written.
     """
     lock = FileLock(folder / LOCK)

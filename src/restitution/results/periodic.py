@@ -1,4 +1,4 @@
-"""Results of a periodic contact: `periodic.csv`, and the content of `results.nc`."""
+"""Results of a periodic contact: the rows of `periodic.csv`, and the content of `results.nc`."""
 
 from __future__ import annotations
 
@@ -21,29 +21,31 @@ from restitution.results.reader import read_json, read_netcdf
 from restitution.results.schema import Column
 from restitution.results.writer import dataset_with_maps
 
-_PATCH = "nodes in the patch of the median contact node"
+_PATCH = "size of the median patch: half of the contact nodes are in patches at least as large"
 COLUMNS = {
     "indentation_m": Column("indentation", "m", "approach of the mean planes since first touch"),
     "mean_gap_m": Column("mean_gap", "m", "distance of the mean planes"),
-    "nominal_pressure_Pa": Column("nominal_pressure", "Pa", "force over nominal area"),
+    "nominal_pressure_Pa": Column("nominal_pressure", "Pa", "force divided by nominal area"),
     "force_N": Column("force", "N", "normal force on one period"),
-    "relative_area": Column("relative_area", "1", "nodes in contact over all nodes"),
+    "relative_area": Column("relative_area", "1", "fraction of all nodes that are in contact"),
     "corrected_relative_area": Column(
-        "corrected_relative_area", "1", "relative area without the error of the staircase edge"
+        "corrected_relative_area",
+        "1",
+        "relative area, corrected for the staircase shape of the contact edge",
     ),
     "largest_pressure_Pa": Column("largest_pressure", "Pa", "largest pressure of a node"),
     "stored_energy_J": Column("stored_energy", "J", "elastic energy of one period"),
     "plastic_work_J": Column("plastic_work", "J", "work dissipated by yielding"),
     "adhesive_work_J": Column("adhesive_work", "J", "work done by adhesion"),
-    "adhesive_loss_J": Column("adhesive_loss", "J", "energy dissipated where the contact jumps"),
+    "adhesive_loss_J": Column("adhesive_loss", "J", "energy dissipated by jumps of the contact"),
     "loading_work_J": Column("loading_work", "J", "work of loading"),
     "contact_nodes": Column("contact_nodes", "1", "nodes in contact"),
     "contact_patches": Column("contact_patches", "1", "contact patches (nodes joined by an edge)"),
     "largest_patch_nodes": Column("largest_patch_nodes", "1", "nodes in the largest patch"),
     "median_patch_nodes": Column("median_patch_nodes", "1", _PATCH),
-    "resolved": Column("resolved", "1", "half of the contact in resolved patches", flag=True),
+    "resolved": Column("resolved", "1", "the grid resolves the median patch", flag=True),
     "residual": Column("residual", "1", "largest violation of the contact conditions"),
-    "convolutions": Column("convolutions", "1", "convolutions that the solve took"),
+    "convolutions": Column("convolutions", "1", "number of convolutions in the solution"),
 }
 
 

@@ -92,7 +92,10 @@ class _Summary(_Stored):
 
 @dataclass(frozen=True)
 class UnloadingCurve:
-    """Unloading from the depth `start` (m): indentation (m), increasing, and force (N)."""
+    """An unloading curve that begins at the depth `start` (m).
+
+    `indentation` (m) and `force` (N) are its points, sorted by increasing indentation.
+    """
 
     start: float
     indentation: Array
@@ -183,7 +186,7 @@ class RunResults:
 
     @cached_property
     def oblique(self) -> list[dict[str, float]]:
-        """The rows of `oblique.csv`, one for each oblique impact; empty if there is none."""
+        """The rows of `oblique.csv`, one for each oblique impact; empty without this file."""
         path = self.folder / OBLIQUE_FILE
         if not path.exists():
             return []
@@ -241,7 +244,15 @@ class EnsembleResults(RunResults):
 
 @dataclass(frozen=True)
 class StoredCase:
-    """One case of a study: name of its folder, status, reason of a failure, swept values, curve."""
+    """One case of a study.
+
+    Attributes:
+        name: Name of the folder of the case.
+        status: One of the values of `STATUS`.
+        reason: Reason of a failure; otherwise empty.
+        swept: The swept values, by key.
+        curve: Curve of the case; empty unless the case is complete.
+    """
 
     name: str
     status: str
@@ -315,14 +326,17 @@ class StudyResults:
 
 
 def read_run(folder: Path) -> RunResults:
-    """Open the results in `folder`: of one surface or of an ensemble. Raises `OutputError`."""
+    """Open the results in `folder`, for one surface or an ensemble. Raises `OutputError`."""
     require_restitution(folder)
     run = RunResults(folder)
     return EnsembleResults(folder) if "realisations" in run.summary else run
 
 
 def _read_table(path: Path, required: Iterable[str], columns: Mapping[str, Column]) -> Curve:
-    """Read and check a table: its cells, and as numbers those in `columns`."""
+    """Read and check a table, which must have the columns `required`.
+
+    The cells of `columns` are converted to numbers.
+    """
     cells = read_cells(path, required)
     rows = [read_numbers(path, line, row, columns) for line, row in enumerate(cells, 2)]
     check_file(path)
@@ -354,9 +368,9 @@ def read_netcdf(path: Path) -> xr.Dataset:
 
 @contextmanager
 def _opened(path: Path) -> Iterator[xr.Dataset]:
-    """Open a netCDF file; delay signals, which could leave locks of the netCDF library held."""
+    """Open a netCDF file, and delay signals, which could leave the netCDF library locked."""
     with reading(path):
-        # Opening the file raises errors of the operating system, which the netCDF library hides.
+        # Raise errors of the operating system here, because the netCDF library would hide them.
         open(path, "rb").close()
     check_file(path)
     try:

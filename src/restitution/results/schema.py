@@ -12,8 +12,8 @@ from restitution.contact.checks.resolution import ADHESIVE_NODES, NODES_PER_PATC
 class Column:
     """A column of a table of results: its variable in `results.nc`, unit, meaning and limits.
 
-    A `flag` is true or false, and an `optional` cell may be empty. All other cells are finite
-    numbers from `low` to `high`.
+    Cells of a `flag` column are true or false, and cells of an `optional` column may be empty. All
+    other cells are finite numbers from `low` to `high`.
     """
 
     variable: str
@@ -25,7 +25,7 @@ class Column:
     flag: bool = False
 
     def labelled(self, along: str | tuple[str, ...], values: object) -> tuple[object, ...]:
-        """Make the variable of `results.nc`: `values` along the dimensions, unit and meaning."""
+        """Make the variable of `results.nc`: dimensions `along`, `values`, unit and meaning."""
         return along, values, {"units": self.unit, "long_name": self.meaning}
 
 
@@ -51,10 +51,13 @@ COLUMNS = {
         "largest_patch_nodes", "1", "nodes in the largest contact patch", low=0.0
     ),
     "residual": Column(
-        "residual", "1", "largest violation of the contact conditions over indentation", low=0.0
+        "residual",
+        "1",
+        "largest violation of the contact conditions, divided by indentation",
+        low=0.0,
     ),
     "convolutions": Column(
-        "convolutions", "1", "convolutions that loading and unloading took", low=0.0
+        "convolutions", "1", "number of convolutions in loading and unloading", low=0.0
     ),
     "pull_off_force_N": Column(
         "pull_off_force", "N", "largest tension during unloading", optional=True
@@ -65,28 +68,30 @@ COLUMNS = {
     "restitution_error": Column(
         "restitution_error", "1", "numerical error of the restitution", low=0.0
     ),
-    "sticks": Column(
-        "sticks", "1", "the pair does not separate: unloading returns no work", flag=True
-    ),
+    "sticks": Column("sticks", "1", "the bodies stick: unloading returns no work", flag=True),
     "adhesion_resolved": Column(
         "adhesion_resolved",
         "1",
-        f"pull-off radius of at least {ADHESIVE_NODES} nodes, or resolved range of the attraction",
+        f"the pull-off radius has at least {ADHESIVE_NODES} nodes, or the grid resolves the range "
+        "of the attraction",
         flag=True,
     ),
     "median_patch_nodes": Column(
-        "median_patch_nodes", "1", "nodes in the patch of the median contact node", low=0.0
+        "median_patch_nodes",
+        "1",
+        "size of the median patch: half of the contact nodes are in patches at least as large",
+        low=0.0,
     ),
     "resolved": Column(
         "resolved",
         "1",
-        f"half of the contact in patches of {NODES_PER_PATCH} nodes or more",
+        f"the median patch has at least {NODES_PER_PATCH} nodes",
         flag=True,
     ),
     "discretisation_error": Column(
         "discretisation_error",
         "1",
-        "error of restitution due to the grid, and to waves of a scan that it leaves out",
+        "error of restitution due to the grid, and to waves of a scan that the grid omits",
         optional=True,
         low=0.0,
     ),
@@ -118,20 +123,29 @@ COLUMNS = {
         low=0.0,
     ),
     "refine": Column(
-        "refinement", "1", "cells along x and y that one cell of [grid] is divided into", low=1.0
+        "refinement",
+        "1",
+        "number of parts into which a cell of [grid] is divided along each axis",
+        low=1.0,
     ),
 }
 # Additional columns of the curve of an ensemble. Its other columns combine the surfaces, mostly as
 # means (`runs.ensemble.mean_rows`).
 SPREAD_COLUMNS = {
-    "realisations": Column("realisations", "1", "surfaces that reached this depth", low=0.0),
+    "realisations": Column(
+        "realisations", "1", "number of surfaces that reached this depth", low=0.0
+    ),
     "restitution_std": Column(
-        "restitution_std", "1", "standard deviation over the surfaces", optional=True, low=0.0
+        "restitution_std",
+        "1",
+        "standard deviation of restitution among surfaces",
+        optional=True,
+        low=0.0,
     ),
     "restitution_low": Column(
         "restitution_low",
         "1",
-        "lower end of the 95 % interval of the mean",
+        "lower end of the 95 % confidence interval of the mean restitution",
         optional=True,
         low=0.0,
         high=1.0,
@@ -139,7 +153,7 @@ SPREAD_COLUMNS = {
     "restitution_high": Column(
         "restitution_high",
         "1",
-        "upper end of the 95 % interval of the mean",
+        "upper end of the 95 % confidence interval of the mean restitution",
         optional=True,
         low=0.0,
         high=1.0,
@@ -205,15 +219,17 @@ OBLIQUE_COLUMNS = {
 # Additional columns of the oblique impacts of an ensemble. Its other columns are means over the
 # surfaces, except `slides`, which is true if the contact slides on all surfaces.
 OBLIQUE_SPREAD_COLUMNS = {
-    "realisations": Column("oblique_realisations", "1", "surfaces with this impact", low=0.0),
+    "realisations": Column(
+        "oblique_realisations", "1", "number of surfaces with this impact", low=0.0
+    ),
     "tangential_restitution_std": Column(
         "oblique_tangential_restitution_std",
         "1",
-        "standard deviation over the surfaces",
+        "standard deviation of tangential_restitution among surfaces",
         low=0.0,
         optional=True,
     ),
 }
 UNLOADING_COLUMNS = ("max_indentation_m", "indentation_m", "force_N")
 STATUS = ("complete", "failed", "missing")  # possible states of a case in the table of a study
-LOCK = ".restitution-lock"  # lock file, held by the process that writes to a folder
+LOCK = ".restitution-lock"  # name of the lock file, which the process that writes to a folder holds

@@ -41,7 +41,7 @@ def reading(path: Path) -> Iterator[None]:
         yield
     except FileNotFoundError:
         raise OutputError(
-            f"{path}: does not exist; give a results folder, which a command wrote with -o"
+            f"{path}: does not exist; give a results folder that a command wrote with -o"
         ) from None
     except OSError as error:
         raise OutputError(f"{path}: cannot be read ({error.strerror or error})") from None
@@ -72,9 +72,7 @@ def read_numbers(
     cells: Mapping[str, str],
     columns: Mapping[str, Column] = ALL_COLUMNS,
 ) -> dict[str, float]:
-    """Convert those cells of one row that belong to `columns` to numbers.
-
-    Columns without a cell are left out.
+    """Convert the cells of one row to numbers, for those of `columns` that the row has.
 
     Raises `OutputError` for a cell that a run cannot have written.
     """

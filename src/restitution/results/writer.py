@@ -122,7 +122,7 @@ class ResultsFolder:
             yield
 
     def add(self, state: State, collision: Collision, refine: int = 1, touch: float = 0.0) -> None:
-        """Append the row (`curve_row`) of one loading state to `curve.csv`."""
+        """Append the row of one state of loading (see `curve_row`) to `curve.csv`."""
         row = curve_row(state, collision, refine, touch)
         with hold_signals():
             _write_row(self._curve, [format_cell(value) for value in row.values()])
@@ -134,7 +134,7 @@ class ResultsFolder:
         write_table(self.path / "curve.csv", rows)
 
     def put_oblique(self, rows: list[dict[str, float]]) -> None:
-        """Write the table of oblique impacts `rows`, unless it is empty."""
+        """Write the `rows` of oblique impacts to `oblique.csv`, unless there are none."""
         self.oblique = [{**row, "slides": bool(row["slides"])} for row in rows]
         if rows:
             write_table(self.path / OBLIQUE_FILE, self.oblique)
@@ -152,7 +152,7 @@ class ResultsFolder:
             self.unloading.append((deepest, points))
 
     def discard(self) -> None:
-        """Remove the empty tables, and the folder if it is new, so that a new run can use it."""
+        """Remove the empty tables, and the folder if it is new, so that another run can use it."""
         for name in ("curve.csv", "unloading.csv"):
             (self.path / name).unlink(missing_ok=True)
         if self._new:
@@ -293,9 +293,9 @@ def results_dataset(folder: ResultsFolder, deepest: State) -> xr.Dataset:
 def dataset_with_maps(
     data: Mapping[str, Any], deepest: State, *, pressure: str, lowering: str
 ) -> xr.Dataset:
-    """Make a dataset of the variables `data` and of maps of the deepest state.
+    """Make a dataset from the variables `data` and from maps of the deepest state.
 
-    `pressure` and `lowering` are the meanings of the maps of pressure and plastic displacement.
+    `pressure` and `lowering` describe the maps of pressure and of plastic displacement in words.
     """
     grid = deepest.contact.grid
     coordinates = {"x": ("x", grid.x, {"units": "m"}), "y": ("y", grid.y, {"units": "m"})}
@@ -318,10 +318,10 @@ def curve_variables(rows: Sequence[Mapping[str, float]]) -> dict[str, Any]:
 
 
 def oblique_variables(rows: Sequence[Mapping[str, float]]) -> dict[str, Any]:
-    """Make the variables of `results.nc` for the rows of oblique impacts; none without rows.
+    """Make the variables of `results.nc` for the `rows` of oblique impacts; none without rows.
 
-    The variables depend on the velocity and the angle of the impact. They are NaN for a missing
-    impact.
+    The variables depend on the velocity and the angle of the impact. They are NaN for combinations
+    of velocity and angle without an impact.
     """
     if not rows:
         return {}
