@@ -11,7 +11,7 @@ Scalar = TypeVar("Scalar", bound=np.generic)
 
 
 def freeze(values: NDArray[Scalar]) -> NDArray[Scalar]:
-    """Make `values` itself read-only and return it; only for arrays that have no other owner."""
+    """Make `values` itself read-only and return it. The caller must be its only owner."""
     values.flags.writeable = False
     return values
 

@@ -1,15 +1,15 @@
 """Convergence study: one case on successively finer grids, with the discretisation error of COR.
 
-With COR f₁, f₂, f₃ on cells h, h/2, h/4 of the same surface,
+With COR f₁, f₂, f₃ on cells of size h, h/2, h/4 of the same surface,
 
     error of f₃ = max(1.5 |f₃ − f₂|, 0.5 |f₂ − f₁|),   observed order = log₂((f₂ − f₁)/(f₃ − f₂)).
 
 The COR of rough contacts oscillates with h more often than it follows a power of h. Richardson
 extrapolation (Roache 1994, J. Fluids Eng. 116, 405–413) would then mostly divide by random numbers.
-Instead, each of the two differences gives an error of f₃ by assuming first-order convergence:
-|f₃ − f₂|, multiplied by a safety factor of 1.5, and 0.5 |f₂ − f₁|. The larger error is used. It
-exceeded the true error in 95 % of the cases of docs/resolution.md. On two grids the error is
-3 |f₂ − f₁|.
+Instead, convergence of first order is assumed. Each of the two differences then gives an error of
+f₃: |f₃ − f₂| and 0.5 |f₂ − f₁|. The first is multiplied by a safety factor of 1.5. The larger error
+is used; it exceeded the true error in 95 % of the cases of docs/resolution.md. On two grids the
+error is 3 |f₂ − f₁|.
 """
 
 from __future__ import annotations

@@ -86,14 +86,13 @@ def run_case(
     With `errors` (and unless the case has total_error = false), every row gets its total error
     (`error_budget`), and a depth that does not converge is left out. Without `errors`, a depth that
     does not converge ends the curve, because rows of several runs are compared by their row number.
-    Contact at the edge of the grid always ends the curve. If a depth fails, the run raises the
-    first such error after the last depth.
+    Contact at the edge of the grid always ends the curve. If depths fail, the first of their errors
+    is raised at the end of the run. Before any error is raised, the results so far and the reason
+    are written. If there are no results, the folder is removed.
 
-    Depths are measured from first touch on the finest grid. `progress` is called
-    with a few words after every depth. `warn` is called with every warning: about the input before
-    the first solve, and about the results at the end, even after an error. Before an error is
-    raised, the results so far and the reason are written. If there are no results, the folder is
-    removed.
+    Depths are measured from first touch on the finest grid. `progress` is called with a few words
+    after every depth. `warn` is called with every warning: about the input before the first solve,
+    and about the results at the end, even after an error.
     """
     case.require_impact()
     run = _Run(progress, warn)

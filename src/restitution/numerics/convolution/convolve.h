@@ -159,8 +159,8 @@ inline void copy_some(void* to, const void* from, Index some) {
         std::memcpy(to, from, some * sizeof(T));
 }
 
-// `load` reads `some` values of a row into a vector, and `store` writes them back. Both multiply the
-// values by a factor, which may be outside the range of single precision.
+// `load` reads `some` values of a row into a vector, and `store` writes `some` values of a vector to a
+// row. Both multiply the values by a factor, which may be outside the range of single precision.
 template <class T, class From>
 inline typename Lanes<T>::Vector load(const From* from, double factor, Index some) {
     constexpr int count = Lanes<T>::count;

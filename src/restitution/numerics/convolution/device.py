@@ -75,7 +75,7 @@ class Device(Protocol):
 
 
 class _LibraryDevice:
-    """Device of a library such as NumPy or CuPy (`arrays`), with its own scipy.fft (`fft`)."""
+    """Device of an array library such as NumPy (`arrays`) and a module like scipy.fft (`fft`)."""
 
     def __init__(self, name: str, arrays: Any, fft: Any) -> None:
         self.name = name

@@ -96,7 +96,7 @@ class Convolution(_Spectral):
         return self._convolve(p, self._spectrum, out, 1.0)
 
     def single_precision(self, p: Array, out: Array | None = None) -> Array:
-        """Return K ∗ p computed in single precision; errors reach 9e-7 of its largest value."""
+        """Return K ∗ p computed in single precision; errors reach 9e-7 times the largest value."""
         return self._convolve(p, self._single_spectrum, out, 1.0)
 
 

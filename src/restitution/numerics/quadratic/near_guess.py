@@ -58,8 +58,9 @@ def solve_near_guess(
     The arguments are those of `solve_multilevel`, but `tolerance` limits the root mean square of
     the violation, because the largest violation often occurs at a few nodes that hardly affect the
     result. The window includes the nodes where the guess has pressure, and the nodes where the
-    bodies overlap after the displacement of the coarser grid. The other nodes are neither solved
-    nor checked. Return the result on the window, the window, and the number of products with K.
+    bodies would overlap with the displacement of the coarser grid. The other nodes are neither
+    solved nor checked. Return the result on the window, the window, and the number of products with
+    K.
     """
     size = b.shape[0], b.shape[1]
     p, displacement, window = np.zeros_like(b), np.zeros_like(b), None
