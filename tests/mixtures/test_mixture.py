@@ -105,8 +105,8 @@ def test_the_verb(cli, refused, mixture_text, computed_mixture, tmp_path):
     assert len(before) == summary["curves_computed"]
     # Each warning once, with the pairs that it concerns.
     assert len(summary["warnings"]) == 5
-    (coarse,) = (text for text in summary["warnings"] if "nodes on the smooth contact" in text)
-    assert coarse.startswith("9 of 14 pairs (alu+alu, alu+pmma, alu+drum): the spacing 0.6 um puts")
+    (coarse,) = (text for text in summary["warnings"] if "nodes at the spacing" in text)
+    assert coarse.startswith("9 of 14 pairs (alu+alu, alu+pmma, alu+drum): the contact radius of ")
     assert coarse.endswith("(with other numbers in other pairs)")
     assert all(warned.count(f"Warning: {text[:60]}") == 1 for text in summary["warnings"])
     assert [law.points for law in read_laws([out])] == [law.points for law in laws]

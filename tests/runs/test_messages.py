@@ -53,7 +53,7 @@ def test_contact_at_the_rim_is_foreseen_where_smooth_bodies_would_not_have_it():
     (line,) = input_warnings(Contact(STEEL, Surface(ridge, GRID), 750e6), 4e-7)
     assert "the gap there is 151.7 nm" in line
     (line,) = input_warnings(Contact(STEEL, Surface(ridge, GRID), 750e6), 5e-8)
-    assert "puts 7.5 nodes on the smooth contact" in line
+    assert "has only 7.5 nodes at the spacing" in line
 
 
 @pytest.mark.parametrize("yield_pressure", [math.inf, 750e6])
@@ -149,7 +149,7 @@ def test_a_contact_larger_than_the_grid():
 
 def test_a_contact_on_few_nodes():
     (line,) = input_warnings(narrow(), depth_of(1e-6))
-    assert "spacing 0.25 um puts 4 nodes" in line
+    assert "has only 4 nodes at the spacing 0.25 um" in line
     assert f"({NODES_PER_RADIUS} are needed)" in line
 
 

@@ -34,7 +34,7 @@ def bounding_box(mask: NDArray[np.bool_], within: Box | None = None) -> Box | No
 
 
 def widen(box: Box, cells: int, nodes: tuple[int, int]) -> Box:
-    """Enlarge the box by `cells` on each side, but not beyond a grid with `nodes` nodes."""
+    """Enlarge the box by `cells` cells on each side, within a grid of `nodes` (nx, ny) nodes."""
     rows, columns = (
         slice(max(part.start - cells, 0), min(part.stop + cells, n))
         for part, n in zip(box, nodes, strict=True)
@@ -71,6 +71,6 @@ def reframe(values: NDArray[Scalar], box: Box, wanted: Box) -> NDArray[Scalar]:
 
 
 def _within(box: Box, ranges: list[tuple[int, int]]) -> tuple[slice, ...]:
-    """Slices of an array on `box` for the `ranges` of grid indices along x and y."""
+    """Convert `ranges` of grid indices along x and y to slices of an array on `box`."""
     pairs = zip(box, ranges, strict=True)
     return tuple(slice(start - part.start, stop - part.start) for part, (start, stop) in pairs)

@@ -12,10 +12,10 @@ Array = NDArray[np.float64]
 
 @use_loop
 def diffuse(neighbours: NDArray[np.intp], weights: Array, steps: int, values: Array) -> None:
-    """Replace the two values at each node by the weighted sums over its neighbours, `steps` times.
+    """Replace the two values at each node by weighted sums over its neighbours, `steps` times.
 
     `neighbours` (node indices) and `weights` have shape (nodes, neighbours). `values` has shape
-    (nodes, 2) and is overwritten. Raises `IndexError` for an index outside the nodes.
+    (nodes, 2) and is overwritten. Raises `IndexError` if an index is not that of a node.
     """
     for _ in range(steps):
         values[...] = np.einsum("ij,ijk->ik", weights, values[neighbours])

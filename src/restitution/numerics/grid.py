@@ -22,7 +22,7 @@ class Grid:
     """Uniform rectangular grid of cells.
 
     The origin is the centre of cell (nx // 2, ny // 2). So the lowest point of a sphere at the
-    origin is a node for any grid size, and grids of equal spacing have coincident nodes.
+    origin is a node for any grid size, and the nodes of grids with equal spacing coincide.
 
     Args:
         nodes: Number of nodes (nx, ny), or one number for both axes.
@@ -87,7 +87,7 @@ def _sides(edges: tuple[float, float]) -> str:
 def _both(name: str, value: Any, wanted: str) -> tuple[Any, Any]:
     """Return the two values of `value` along x and y, or `value` twice if it is one number.
 
-    Raises `CaseError` if `value` is neither; the message contains the expected input, `wanted`.
+    Any other `value` raises `CaseError`; the message states the expected input, `wanted`.
     """
     along = (value, value) if isinstance(value, Real) else value
     try:
@@ -95,7 +95,7 @@ def _both(name: str, value: Any, wanted: str) -> tuple[Any, Any]:
     except (TypeError, ValueError):
         first = second = None
     if not all(isinstance(one, Real) and not isinstance(one, bool) for one in (first, second)):
-        raise CaseError(f"{name}: {shown(value)} is not {wanted}")
+        raise CaseError(f"{name}: give {wanted}, not {shown(value)}")
     return first, second
 
 

@@ -1,7 +1,8 @@
 """Selection of compiled kernels or NumPy expressions, and of the instruction set of the kernels.
 
 Each time-critical operation is written twice: as a NumPy expression of whole arrays, which works on
-any device, and as a C++ loop that computes the same in one pass over memory. Tests compare the two.
+any device, and as a C++ loop that computes the same result in one pass over memory. Tests compare
+both.
 The loops form the module `restitution.numerics.loops`. If this module was not compiled or cannot be
 loaded, the NumPy expressions are used, which are several times slower.
 
@@ -30,7 +31,7 @@ Result = TypeVar("Result")
 
 
 def _load() -> tuple[Any, str]:
-    """Return the compiled module and an empty text, or None and a text with reason and remedy.
+    """Return the compiled module and an empty text, or None and a text with a reason and a remedy.
 
     Raises `CaseError` if RESTITUTION_KERNELS names unknown kernels or kernels that cannot be
     loaded.
@@ -60,7 +61,7 @@ instruction_set: str = INSTRUCTION_SETS[loops.instruction_set] if loops else "no
 
 
 def missing() -> str | None:
-    """Message with the reason and the remedy if no compiled kernels are used, otherwise None."""
+    """Return None, or a message with reason and remedy if no compiled kernels are used."""
     if loops is not None:
         return None
     return f"NumPy replaces the compiled kernels and takes 3 to 6 times as long: {_reason}"

@@ -48,5 +48,5 @@ PYBIND11_MODULE(loops, module) {
         module.attr("instruction_set") = kernels.instruction_set;
         return;
     }
-    throw py::import_error("this processor, or what was compiled, has no " + wanted);
+    throw py::import_error("the processor or the compiled module does not support " + wanted);
 }

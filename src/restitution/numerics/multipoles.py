@@ -1,4 +1,4 @@
-"""Multipole series on a grid, for a source that is even along both axes."""
+"""Multipole series on a grid, for a source that is symmetric about both axes."""
 
 from __future__ import annotations
 

@@ -45,8 +45,9 @@ def integrate_adaptively(
     1969).
 
     The error estimate compares two rules on the same interval. If the integrand is zero at all five
-    nodes but not between them, the estimate is wrongly zero. A larger number of initial intervals
-    (`panels`) reduces this risk, for example for an integrand that is zero up to first yield.
+    nodes of the interval but not between them, the estimate is wrongly zero. A larger number of
+    initial intervals (`panels`) reduces this risk, for example for an integrand that is zero up to
+    first yield.
     """
     edges = [*(a + (b - a) * k / panels for k in range(panels)), b]
     value, error, left = 0.0, 0.0, f_a
@@ -72,8 +73,8 @@ def _refine(
     f_l, f_r = f(0.5 * (a + m)), f(0.5 * (m + b))
     whole = h / 6 * (f_a + 4 * f_m + f_b)
     halves = h / 12 * (f_a + 4 * f_l + 2 * f_m + 4 * f_r + f_b)
-    # For a smooth integrand, the error of `halves` is |halves − whole|/15. The estimate is 15 times
-    # as large, because the integrand may have kinks.
+    # For a smooth integrand, the error of `halves` is |halves − whole|/15. The estimate below is
+    # 15 times as large, because the integrand may have kinks.
     error = abs(halves - whole)
     if error <= tolerance or depth == 0:
         return halves + (halves - whole) / 15, error

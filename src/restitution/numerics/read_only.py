@@ -11,7 +11,7 @@ Scalar = TypeVar("Scalar", bound=np.generic)
 
 
 def freeze(values: NDArray[Scalar]) -> NDArray[Scalar]:
-    """Make `values` itself read-only and return it. Use it only for arrays without other owners."""
+    """Make `values` itself read-only and return it. The caller must be its only owner."""
     values.flags.writeable = False
     return values
 

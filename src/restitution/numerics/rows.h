@@ -50,7 +50,7 @@ struct type_caster<Rows<T>> {
 #define MANY_PROCESSORS
 #endif
 
-// Add the convolution to the module; defined in convolution/convolve.cpp.
+// These functions add the convolution to the module. They are defined in convolution/convolve.cpp.
 void define_plain_convolve(py::module_& module);
 #ifdef MANY_PROCESSORS
 void define_avx2_convolve(py::module_& module);

@@ -15,8 +15,8 @@
 // Largest number of threads; `use_threads` sets it.
 inline std::atomic<int> most_threads{1};
 
-// Sizes of the arrays of a loop and of a transform (bytes, measured on two cores). Below these sizes
-// threads cost more time than they save.
+// Total size (bytes) of the arrays of a loop, and size of the array of a transform, below which threads
+// cost more time than they save. Both were measured on two cores.
 constexpr Index LOOP_WORTH_THREADS = 8 << 20, BYTES_WORTH_THREADS = 4 * 350 * 350;
 
 template <class T>
@@ -27,9 +27,9 @@ Index bytes_of(const Rows<T>& rows) {
 inline int threads_for(Index bytes) { return bytes > BYTES_WORTH_THREADS ? most_threads.load() : 1; }
 
 // Number of times that a waiting thread polls, yielding each time, before it sleeps. On an idle machine
-// 200 polls cover the time between the first and the last thread of a step (0.1 ms). On a shared machine
-// a thread may be suspended for milliseconds. More polls would then take the processor from threads that
-// have work.
+// 200 polls cover the time for which the first thread to finish a step waits for the last (0.1 ms). On
+// a shared machine a thread may be suspended for milliseconds. More polls would then take the processor
+// from threads that have work.
 constexpr int LOOKS = 200;
 
 // Threads that share the steps of an operation.
@@ -55,8 +55,8 @@ class ThreadTeam {
         if (error_) std::rethrow_exception(error_);
     }
 
-    // Call `step(i)` for i = 0, every, 2 every, … below n, each in the next free thread; then wait for
-    // all threads.
+    // Call `step(i)` for i = 0, every, 2·every, … as long as i < n, each in the next free thread. Then
+    // wait until all threads have finished.
     template <class Step>
     void parallel_for(Index n, Index every, Step step) {
         const Index steps = (n + every - 1) / every;
@@ -76,7 +76,7 @@ class ThreadTeam {
     std::atomic<int> count_{0}, arrived_{0}, round_{0};
     std::atomic<Index> next_{0};
     std::atomic<bool> failed_{false};
-    std::exception_ptr error_;  // the first one thrown
+    std::exception_ptr error_;  // the first exception thrown
     std::mutex mutex_;          // held while a condition of `wait` changes
     std::condition_variable changed_;
 

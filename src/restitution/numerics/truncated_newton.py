@@ -10,7 +10,7 @@ Each step of Newton's method is solved by conjugate gradients that stop at the b
 region or at negative curvature (Steihaug 1983, SIAM J. Numer. Anal. 20, 626–637). K is the
 preconditioner, so each direction is K times a sum of residuals. The product of the direction with
 K⁻¹ is this known sum, so an iteration takes only one product with K. The energy falls in every
-step. So if the start is no longer a minimum, the method descends to a neighbouring minimum.
+step, so the method descends from its start to a neighbouring minimum.
 
 With `zero_mean`, K maps constant arrays to zero. The minimum is then sought among all u of mean
 zero. The mean of p has no effect on u, and it is chosen so that the mean of the gradient is zero.
@@ -126,8 +126,8 @@ def _newton_step(
 
     Returns x, K⁻¹x, whether a limit truncated the step, and whether the step met a direction of
     negative curvature. `limits` are two numbers. The first is the radius of the trust region in the
-    norm (xᵀK⁻¹x)^½, infinite if there is no trust region yet. In this case, the second number
-    limits the change of u in a step along negative curvature.
+    norm (xᵀK⁻¹x)^½; it is infinite if there is no trust region yet. The second number limits the
+    change of u in a step along negative curvature as long as there is no trust region.
     """
     radius, length = limits
     x, Sx, Hd, scaled = (np.zeros_like(r) for _ in range(4))

@@ -1,8 +1,8 @@
 """Companion curves of a run: additional curves that show how COR changes with the input.
 
-Each curve has another grid, another surface or other materials. Companion curves are computed on
-cells twice as large, so each of them takes about a fifth of the time of the run. They are compared
-with the run at equal loading work, that is, at equal impact velocity.
+All companion curves are computed on cells twice as large as those of the run, so each of them takes
+about a fifth of the time of the run. Some also have another surface or other materials. They are
+compared with the run at equal loading work, that is, at equal impact velocity.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ Array = NDArray[np.float64]
 SURFACES = 7  # number of additional surfaces from which the scatter is estimated
 _TOLERANCE = 0.005  # allowed error of COR due to the steps of adhesive unloading
 
-# Factors on the smallest and the largest depth that give one more depth at each end. These depths
-# are needed because other surfaces reach the same work at other depths.
+# Two depths are added: the smallest depth times the first factor, and the largest depth times the
+# second factor. They are needed because other surfaces reach the same work at other depths.
 _SHALLOWER, _DEEPER = 0.5, 1.3
 
 

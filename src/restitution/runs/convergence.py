@@ -1,15 +1,15 @@
 """Convergence study: one case on successively finer grids, with the discretisation error of COR.
 
-With COR f₁, f₂, f₃ on cells h, h/2, h/4 of the same surface,
+With COR f₁, f₂, f₃ on cells of size h, h/2, h/4 of the same surface,
 
     error of f₃ = max(1.5 |f₃ − f₂|, 0.5 |f₂ − f₁|),   observed order = log₂((f₂ − f₁)/(f₃ − f₂)).
 
 The COR of rough contacts oscillates with h more often than it follows a power of h. Richardson
 extrapolation (Roache 1994, J. Fluids Eng. 116, 405–413) would then mostly divide by random numbers.
-Instead, each of the two differences gives an error of f₃ by assuming first-order convergence:
-|f₃ − f₂|, multiplied by a safety factor of 1.5, and 0.5 |f₂ − f₁|. The larger error is used. It
-exceeded the true error in 95 % of the cases of docs/resolution.md. On two grids the error is
-3 |f₂ − f₁|.
+Instead, convergence of first order is assumed. Each of the two differences then gives an error of
+f₃: |f₃ − f₂| and 0.5 |f₂ − f₁|. The first is multiplied by a safety factor of 1.5. The larger error
+is used; it exceeded the true error in 95 % of the cases of docs/resolution.md. On two grids the
+error is 3 |f₂ − f₁|.
 """
 
 from __future__ import annotations
@@ -65,8 +65,8 @@ def run_convergence(
     grid. If a run fails, the study ends and keeps the results so far.
 
     Depths are measured from first touch on the finest grid. The highest summit lies between the
-    nodes of a coarser grid, so a coarser grid touches after a larger approach. Measured from the
-    first touch on the coarser grid, its indentations are smaller by the difference of the two
+    nodes of a coarser grid, so a coarser grid touches after a larger approach. Its indentations,
+    measured from its own first touch, are therefore smaller by the difference of the two
     approaches.
     """
     case.require_impact()
@@ -148,7 +148,7 @@ def _levels(case: Case, folder: Path, grids: int) -> dict[int, float]:
     if nx * ny * factors[-1] ** 2 > MOST_NODES:
         raise CaseError(
             f"grids: the finest grid would have {nx * factors[-1]} x {ny * factors[-1]} nodes, "
-            f"and at most {MOST_NODES} are allowed; give fewer grids, or a coarser first grid"
+            f"but at most {MOST_NODES} are allowed; give fewer grids, or a coarser first grid"
         )
     return later_touches(case, folder, factors)
 
@@ -173,7 +173,7 @@ def _write_results(
     log: RunLog,
     unsettled: list[str],
 ) -> dict[str, Any]:
-    """Write the curve of the finest grid, the table of all grids, and the summary; return it."""
+    """Write the finest curve, the table of all grids and the summary; return the summary."""
     depths = _by_depth(case, runs)
     finest = [rows[max(runs)] for rows in depths if max(runs) in rows]
     lacking = _with_grid_errors(case, folder, finest) if case.total_error else 0
@@ -243,11 +243,11 @@ def _write_results(
 def _with_grid_errors(case: Case, folder: Path, rows: list[Row]) -> int:
     """Add three parts to the discretisation error of `rows`, the rows of the finest grid.
 
-    The first part is a lower limit, because differences of COR between grids may vanish by chance.
-    The second part is the effect of the waves that the finest grid leaves out of a scan, and the
-    third is that of nodes that would yield only on a finer grid. If the study was interrupted
-    before `_add_errors`, the rows get no parts and no total. Returns the number of rows that are
-    unresolved because of the waves.
+    The first part is a minimum error, because differences of COR between grids may vanish by
+    chance. The second part is the effect of the waves that the finest grid leaves out of a scan.
+    The third part is the effect of nodes that would yield only on a finer grid. If the study was
+    interrupted before `_add_errors`, the rows get no parts and no total. Returns the number of rows
+    that are unresolved because of the waves.
     """
     octaves = Band.of(case.refined(int(max(row["refine"] for row in rows))).surface(folder)).octaves
     lacking = 0
@@ -264,7 +264,7 @@ def _with_grid_errors(case: Case, folder: Path, rows: list[Row]) -> int:
 
 
 def _by_depth(case: Case, runs: _Runs) -> list[dict[int, Row]]:
-    """Return for each depth the rows of all grids that reached it, with grid error and order."""
+    """Return the rows of all grids for each depth, with discretisation error and observed order."""
     asked = case.depths()
     found: list[dict[int, Row]] = [{} for _ in asked]
     for factor, (later, rows) in sorted(runs.items()):

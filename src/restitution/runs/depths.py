@@ -52,9 +52,9 @@ def load_to(case: Case, contact: Contact, depth: float, start: State | None = No
     """Load `contact` to `depth`, one of `case.depths()`.
 
     Depending on the case, `depth` is an indentation (m), a force (N), an impact velocity (m/s) or a
-    nominal pressure (Pa). `start` is the state at a shallower depth; it saves time, but not at a
-    prescribed pressure. Raises the errors of `solve`, `solve_at_force`, `solve_at_velocity` or
-    `solve_at_pressure`.
+    nominal pressure (Pa). `start` is the state at a shallower depth. It saves time, but it is not
+    used if a pressure is prescribed. Raises the errors of `solve`, `solve_at_force`,
+    `solve_at_velocity` or `solve_at_pressure`.
     """
     with naming_keys():
         if case.pressure is not None:
@@ -92,7 +92,7 @@ def loaded_depths(case: Case, folder: Path, contact: Contact) -> Iterator[Depth]
 def collision_at(
     case: Case, state: State, *, unload: bool = False, known: Sequence[State] = ()
 ) -> tuple[Collision, Sequence[State]]:
-    """Return the collision with the maximum indentation of `state`, and its unloading curve.
+    """Return the collision with the maximum indentation of `state`, and the unloading curve.
 
     The curve is computed if `unload` is true or if the collision needs it; otherwise it is empty.
     `known` is the unloading curve of a shallower depth, which `unloading_path` may reuse.

@@ -30,7 +30,8 @@ from restitution.runs.refinement import settled
 from restitution.runs.run import run_case
 
 CONFIDENCE = 0.95
-# Columns of an ensemble's curve that are not means, and the functions that combine the surfaces.
+# Columns of an ensemble's curve that are not means, and the functions that combine the values of
+# the surfaces. The flags in _ALL are true if they are true for all surfaces.
 _WORST: dict[str, Callable[[list[float]], float]] = {
     "residual": max,
     "model_error": max,
@@ -53,9 +54,9 @@ def run_realisations(
 
     A periodic case is run by `run_periodic`. A single surface is run by `run_case` alone. If there
     are several surfaces, the run on surface n (n = 1, 2, …) is stored in a folder
-    `realisation-<n>`, and the curve of `out` contains the means (`mean_rows`). Surface n has n − 1
-    added to its seed or to its place on the scan. If the run on a surface fails, its error is
-    recorded and the other runs continue. If all runs fail, the first error is raised. With
+    `realisation-<n>`, and the curve of `out` contains the means (`mean_rows`). Surface n has the
+    seed (or the place on the scan) of the case plus n − 1. If the run on a surface fails, its error
+    is recorded and the other runs continue. If all runs fail, the first error is raised. With
     `grid.refine = "auto"`, the first surface decides the grid of each depth for all surfaces
     (`refinement`).
     """
@@ -126,7 +127,7 @@ class _Ensemble:
             )
 
     def _add_errors(self) -> None:
-        """Estimate the errors of grid and materials on the surface that reached the most depths.
+        """Estimate the errors due to grid and materials on the surface with the most depths.
 
         The scatter between surfaces follows from the ensemble itself.
         """
@@ -212,7 +213,7 @@ class _Ensemble:
         if fewest < self.case.realisations:
             yield (
                 f"some depths are means of only {fewest:.0f} of {self.case.realisations} surfaces "
-                "(column realisations of curve.csv): the others ended earlier"
+                "(column realisations of curve.csv): the other runs ended earlier"
             )
         if lacking := sum(error > MISSING_BAND for error in self.band_errors):
             yield (
@@ -225,16 +226,15 @@ class _Ensemble:
 def mean_rows(curves: Sequence[Sequence[Row]], errors: Sequence[Row] = ()) -> list[Row]:
     """Make the curve of an ensemble: for each depth, a row of means over the surfaces.
 
-    A row is computed from the surfaces that reached its depth.
+    A row is computed from the surfaces that reached its depth. Most columns are means over these
+    surfaces. `residual`, `model_error` and `refine` are the largest values, `median_patch_nodes` is
+    the smallest value and `convolutions` the sum. Flags are true if they are true for all of these
+    surfaces. Additional columns are the number n of surfaces, the sample standard deviation s of
+    COR, and the ends of the 95 % confidence interval of the mean COR. The interval is
+    mean ± t s/√n with Student's t, clipped to [0, 1]. With one surface, s and the ends are NaN.
 
-    Most columns are means over the surfaces. `residual`, `model_error` and `refine` are the largest
-    values, `median_patch_nodes` the smallest value and `convolutions` the sum. Flags are true if
-    they are true for all surfaces. Additional columns are the number of surfaces, the sample
-    standard deviation s of COR, and the ends of the 95 % confidence interval of the mean COR,
-    mean ± t s/√n with Student's t, clipped to [0, 1] (NaN for one surface).
-
-    `errors` are the rows of one surface with the errors of grid and materials. These errors are
-    used for the mean, too. `surface_scatter` is half of the width of the confidence interval.
+    `errors` are the rows of one surface with the errors due to grid and materials. These errors are
+    used for the means, too. `surface_scatter` is half of the width of the confidence interval.
     """
     from scipy.stats import t
 

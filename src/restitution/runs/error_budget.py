@@ -9,15 +9,16 @@ COR is the mean over surfaces of the same kind, on a grid that resolves all wave
 
     discretisation_error² = ΔCOR² [1 + (1.5 n)²] + (q² D)² + (s f)²,   n = ln(S/S_h)/ln(S_h/S_2h).
 
-S is the rms slope of the scan, and S_h and S_2h are the rms slopes on cells of h and 2h. The
-formula assumes that the waves beyond the grid change COR with ln S at the same rate as the last
-octave that the grid resolves. For generated surfaces n = 0 and S = S_h, because their definition
-includes the shortest wave.
+S is the rms slope of the scan. S_h and S_2h are the rms slopes on cells of size h, the cell size of
+the run, and 2h. The formula assumes that the waves that the grid leaves out change COR with ln S at
+the same rate as the last octave that the grid resolves. For generated surfaces n = 0 and S = S_h,
+because their definition includes the shortest wave.
 
-D is the change of COR on the larger cells if the yield pressure is multiplied by (S_2h/S)². Waves
+D is the change of COR on cells of 2h if the yield pressure is multiplied by (S_2h/S)². Waves
 that a grid lacks raise the local pressure. Therefore, a contact may yield on a finer grid although
 it is elastic on cells of h and of 2h, where ΔCOR vanishes. q is the elastic share of the work
-stored and dissipated in loading: nodes that already yield do so on a finer grid, too.
+stored and dissipated in loading. The factor q² reduces D where nodes already yield, because these
+nodes yield on a finer grid, too.
 
 f is the usual error of contacts with the same number of nodes in the median patch, the contact
 patch of the median contact node (docs/resolution.md). s is the fraction of f that is added. s is
@@ -48,7 +49,8 @@ from restitution.surfaces.refine import coarsen
 Row = dict[str, float]
 
 _BAND = 1.5  # safety factor on the change of COR expected from waves that the grid leaves out
-# Exponent of S_2h/S in D. It exceeds 1 because the largest pressures rise more than the rms slope.
+# Exponent of S_2h/S in the term D (see the top of this file). It exceeds 1 because the largest
+# pressures rise more than the rms slope.
 _PEAKS = 2
 
 # The fraction s (see the top of this file) for resolved and for unresolved contacts. For unresolved
@@ -63,8 +65,8 @@ _PATCH_ERROR = (0.9, 0.4, 0.15, 0.08, 0.05, 0.024, 0.008)
 # Error due to the surface, in standard deviations of COR between surfaces. With eight surfaces, it
 # exceeds the true error in about 88 % of cases.
 _SCATTER = 1.5
-# Lengths, in the logarithm of the loading work, over which differences of COR are smoothed, because
-# single differences may vanish by chance.
+# Differences of COR between grids and between surfaces are smoothed over these lengths, in the
+# logarithm of the loading work, because single differences may vanish by chance.
 _NEAR_GRID, _NEAR_SURFACE = 2.0, 1.0
 MOST_AFFORDABLE = 2**24  # largest recommended number of nodes (takes some minutes and 2 GB)
 
@@ -72,8 +74,8 @@ MOST_AFFORDABLE = 2**24  # largest recommended number of nodes (takes some minut
 MISSING_BAND = 0.03
 
 NOT_INCLUDED = (
-    "the model (range of adhesion and model of plasticity: model_error; half-space), values that "
-    "the case gives, rate effects, elastic waves"
+    "the model (range of adhesion and model of plasticity, see model_error; half-space), values "
+    "given in the case file, rate effects, elastic waves"
 )
 
 
@@ -141,7 +143,7 @@ def widened_error(
 
     `error` comes from a convergence study. `last_change` is the difference of COR between the last
     two grids. `unseen` comes from `unseen_yield`, and `octaves` is `Band.octaves`. Returns the sum
-    and the effect of the waves.
+    and the part due to the omitted waves.
     """
     band = _BAND * octaves * last_change
     return math.hypot(error, band, unseen, _floor(row)), band
@@ -150,7 +152,7 @@ def widened_error(
 def scatter(restitution: Array, work: Array) -> Array:
     """Scatter of COR between surfaces; NaN if fewer than two surfaces have a curve.
 
-    `restitution` has a row for each surface.
+    `restitution` has a row for each surface and a column for each value of `work` (J).
     """
     known = restitution[np.isfinite(restitution).all(axis=1)]
     if len(known) < 2:
@@ -168,12 +170,13 @@ def add_errors(
     *,
     scattered: bool = True,
 ) -> list[float]:
-    """Add the errors of grid, surface and materials, and their total, to the rows of a run.
+    """Add the errors due to grid, surface and materials, and their total, to the rows of a run.
 
     `surface` is the surface of the deepest depth. If `scattered` is false, the scatter between
     surfaces is left out. If the loading work of a row is not positive, no impact has its maximum at
-    this depth, and the row gets no errors. If a part of the error is unknown, the row gets no
-    total. Returns the errors due to waves that the grid leaves out, one for each row with errors.
+    this depth, and the row gets no errors. If a part of the error of a row is unknown, the row gets
+    no total. Returns the errors due to waves that the grid leaves out, one for each row that gets
+    errors.
     """
     band: list[float] = []
     reached = [row for row in rows if row["loading_work_J"] > 0]
@@ -231,7 +234,7 @@ def band_warning(surface: Surface, band_errors: Sequence[float]) -> Iterator[str
     band = Band.of(surface)
     nodes = [math.ceil(edge / band.pixel) for edge in surface.grid.size]
     remedy = (
-        "this is too large, so use a smaller grid, or only the larger depths"
+        "such a grid is too large, so use a smaller area, or only the larger depths"
         if nodes[0] * nodes[1] > MOST_AFFORDABLE
         else "use a smaller grid.spacing or a larger grid.refine"
     )
@@ -239,7 +242,7 @@ def band_warning(surface: Surface, band_errors: Sequence[float]) -> Iterator[str
         f"the grid leaves out waves of the scan with {band.removed_slope:.0%} of its rms slope, "
         f"and {len(lacking)} of {len(band_errors)} depths are not resolved because of this (COR "
         f"may be off by {max(lacking):.2g}): cells of {1e6 * band.pixel:.3g} um ({nodes[0]} x "
-        f"{nodes[1]} nodes) would resolve them; {remedy}"
+        f"{nodes[1]} nodes) would resolve these waves; {remedy}"
     )
 
 

@@ -47,7 +47,7 @@ class RunLog:
         self.tell(warning)
 
     def progress_of(self, name: str) -> Say:
-        """Return a `progress` function for one of several runs; it adds the `name` of the run."""
+        """Return a `progress` function for one of several runs that adds the `name` of the run."""
         return lambda words: self.progress(f"{name}, {words}")
 
     def warnings_of(self, part: ResultsFolder) -> Say:
@@ -65,7 +65,7 @@ class RunLog:
 
     @contextmanager
     def record(self, out: ResultsFolder, keep: Callable[[], dict[str, Any]]) -> Iterator[None]:
-        """Record how the `with` body ends, let `keep` write the results, and issue new warnings.
+        """Record how the `with` body ends, let `keep` write the results, and issue their warnings.
 
         `keep` returns the summary, which is stored in the attribute `summary`. If nothing was
         computed, the summary is empty and the folder is removed. Errors of the body are raised

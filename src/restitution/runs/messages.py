@@ -33,7 +33,7 @@ _ERRORS: dict[Code, type[RestitutionError]] = {
     "range-unresolved": CaseError,
 }
 _NEARLY_JKR = 0.9  # no warning if the energy lost by adhesion is above this fraction of JKR's loss
-_KEYS = {"force": "load", "velocity": "impact"}  # key of the case file for arguments of solvers
+_KEYS = {"force": "load", "velocity": "impact"}  # argument of a solver: key of the case file
 
 
 def require_possible(contact: Contact, indentation: float) -> None:
@@ -64,8 +64,9 @@ def no_range(contact: Contact) -> list[str]:
         'interface.adhesion is not given, and the grid is too coarse for "cohesive" (it needs '
         f'a spacing of {_nm(needed_spacing(contact))}), so "jkr" is used, which neglects the range '
         f"of the attraction: smooth bodies with this Tabor parameter ({tabor:.2g}) dissipate "
-        f"{lost:.2g} times the energy of JKR and have {math.sqrt(lost):.2g} times its sticking "
-        "velocity, and rough bodies dissipate even less; model_error includes this"
+        f"{lost:.2g} times the energy that JKR predicts and have {math.sqrt(lost):.2g} times its "
+        "sticking velocity, and rough bodies dissipate even less; model_error includes this "
+        "difference"
     ]
 
 
@@ -139,10 +140,10 @@ def message(found: Finding) -> str:
             )
         case "few-nodes":
             return (
-                f"the spacing {_um(found['spacing'])} puts "
-                f"{found['radius'] / found['spacing']:.2g} nodes on the smooth contact radius "
-                f"{_um(found['radius'])} at the deepest point ({NODES_PER_RADIUS} are "
-                "needed): use a finer grid or scan"
+                f"the contact radius of the smooth bodies, {_um(found['radius'])} at the deepest "
+                f"indentation, has only {found['radius'] / found['spacing']:.2g} nodes at the "
+                f"spacing {_um(found['spacing'])} ({NODES_PER_RADIUS} are needed): use a finer "
+                "grid or scan"
             )
         case "no-half-space":
             return (

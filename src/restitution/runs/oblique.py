@@ -35,7 +35,7 @@ def oblique_rows(case: Case, surface: Surface, out: ResultsFolder) -> tuple[list
     """Compute the oblique impacts of `case` from the rows and the unloading curves of `out`.
 
     Returns a row of `oblique.csv` for each impact. The second value is a warning that names the
-    impacts that could not be computed, or None if there are none.
+    impacts that could not be computed, or None if all were computed.
     """
     impact, friction = case.impact, case.interface.friction
     assert impact is not None  # the case is oblique

@@ -25,8 +25,8 @@ from restitution.surfaces import describe
 
 CONVENTIONS = {
     "indentation": "approach of the mean planes of the two surfaces since first touch",
-    "nominal_pressure": "normal force over the area of one period",
-    "works": "of one period, without the uniform compression of the bodies by the mean pressure",
+    "nominal_pressure": "normal force divided by the area of one period",
+    "works": "of one period, without the work of uniform compression by the mean pressure",
 }
 
 

@@ -19,8 +19,8 @@ from restitution.runs.messages import no_range
 # Largest number of nodes of a grid that "auto" tries. Such a grid takes a few minutes and about
 # 2 GiB.
 MOST_NODES = 2**24
-# Factor on the number of nodes that a patch needs, because other surfaces of an ensemble may have
-# smaller patches.
+# Safety factor on the number of nodes that a patch needs, because other surfaces of an ensemble
+# may have smaller patches.
 _MARGIN = 1.5
 
 

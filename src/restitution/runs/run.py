@@ -78,20 +78,21 @@ def run_case(
     *,
     errors: bool = True,
 ) -> dict[str, Any]:
-    """Run `case` (with the text `text`, and files relative to `folder`) and return the summary.
+    """Run `case` and return the summary.
+
+    `text` is the text of the case file, and files named in the case are relative to `folder`. The
+    case has one surface (see `ensemble`). `grid.refine = "auto"` is replaced first (`refinement`).
 
     With `errors` (and unless the case has total_error = false), every row gets its total error
     (`error_budget`), and a depth that does not converge is left out. Without `errors`, a depth that
     does not converge ends the curve, because rows of several runs are compared by their row number.
-    Contact at the edge of the grid always ends the curve. In each of these cases the run raises the
-    first error at its end.
+    Contact at the edge of the grid always ends the curve. If depths fail, the first of their errors
+    is raised at the end of the run. Before any error is raised, the results so far and the reason
+    are written. If there are no results, the folder is removed.
 
-    The case has one surface (see `ensemble`). `grid.refine = "auto"` is replaced first
-    (`refinement`). Depths are measured from first touch on the finest grid. `progress` is called
-    with a few words after every depth. `warn` is called with every warning: about the input before
-    the first solve, and about the results at the end, even after an error. Before an error is
-    raised, the results so far and the reason are written. If there are no results, the folder is
-    removed.
+    Depths are measured from first touch on the finest grid. `progress` is called with a few words
+    after every depth. `warn` is called with every warning: about the input before the first solve,
+    and about the results at the end, even after an error.
     """
     case.require_impact()
     run = _Run(progress, warn)
@@ -186,7 +187,7 @@ def _keep(
 
 
 def _check(state: State, back: Sequence[State], collision: Collision) -> dict[str, float]:
-    """Check the energy balance of an unloading curve."""
+    """Return the energy balance of an unloading curve, for the diagnostics of the run."""
     work = unloading_curve(list(back)).work()
     return {
         "max_indentation_m": state.indentation,
@@ -266,7 +267,7 @@ def _result_warnings(case: Case, contact: Contact, out: ResultsFolder, run: _Run
     """Yield the warnings about the results of the run."""
     depths = [row["max_indentation_m"] for row in out.rows]
     patches = [row["median_patch_nodes"] for row in out.rows]
-    # If the last row could not be written, there is one value more than rows.
+    # If the last row could not be written, there is one value more than there are rows.
     nodes = run.adhesive_nodes[: len(depths)]
     unresolved = unresolved_patches(depths, patches) + unresolved_adhesion(depths, nodes)
     yield from map(message, unresolved)
@@ -335,7 +336,7 @@ def _unbalanced(checks: list[dict[str, float]]) -> Iterator[str]:
         worst = max(off, key=lambda check: abs(check["relative_to_stored_energy"]))
         yield (
             f"the work of {len(off)} of {len(checks)} unloading curves differs from the stored "
-            f"energy, at worst by {worst['relative_to_stored_energy']:+.1%} from "
+            f"energy, at worst by {worst['relative_to_stored_energy']:+.1%} at "
             f"{1e9 * worst['max_indentation_m']:.4g} nm: raise unloading.steps, or refine the grid"
         )
 

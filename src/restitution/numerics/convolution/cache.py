@@ -64,7 +64,7 @@ class OperatorCache:
                 self._shrink()
 
     def clear(self) -> None:
-        """Drop all values. A running solve that uses a dropped value keeps it."""
+        """Drop all values. A running solve keeps the values that it uses."""
         with self._lock:
             self._values.clear()
 

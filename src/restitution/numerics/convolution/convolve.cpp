@@ -3,8 +3,8 @@
 //
 // A few columns at a time are transformed, so that they stay in the cache. Zero padding is neither
 // stored nor transformed. For n values in a period of 2 m ≥ 2 n, a transform of length m gives the modes
-// of even wave number. The same transform of the values times exp(−πi j/m) gives the modes of odd wave
-// number.
+// of even wave number. The same transform gives the modes of odd wave number if value j is first
+// multiplied by exp(−πi j/m).
 
 #include "thread_team.h"
 #include "rows.h"
@@ -39,10 +39,10 @@ struct Plan {
 
     Plan(Index period, int parts)
         : period(period), parts(parts), length(period / parts), places(period) {
-        Index rest = length;  // factor that remains after these stages
-        for (int radix : {4, 2, 3, 5, 7})  // the fastest of five orders measured
+        Index rest = length;  // factor of the length that remains after the stages so far
+        for (int radix : {4, 2, 3, 5, 7})  // the fastest of five measured orders
             for (; rest % radix == 0; rest /= radix) radices.push_back(radix);
-        if (rest != 1) throw std::invalid_argument("only factors 2, 3, 5 and 7 are transformed");
+        if (rest != 1) throw std::invalid_argument("a length may only have the factors 2, 3, 5 and 7");
         rest = length;
         for (int radix : radices) {
             auto& stage = twiddles.emplace_back();
@@ -82,7 +82,8 @@ struct Roots {
 template <class T, int r>
 const Roots<T, r> ROOTS;
 
-// The plan for `values` in a period. Plans are kept, because making one takes longer than a transform.
+// The plan for a number of `values` in a `period`. Plans are kept, because making a plan takes longer
+// than a transform.
 template <class T>
 std::shared_ptr<const Plan<T>> plan_for(Index values, Index period) {
     if (values > period) throw std::invalid_argument("more values than the period holds");
@@ -105,8 +106,8 @@ inline std::unique_ptr<void, Free> allocate(Index bytes) {
     return std::unique_ptr<void, Free>(::operator new(bytes, std::align_val_t(LINE)));
 }
 
-// Distance between the starts of two rows (bytes): an odd number of cache lines. Rows at a distance of a
-// power of two would evict each other from the cache.
+// Distance between the starts of consecutive rows (bytes): an odd number of cache lines. Rows at a
+// distance of a power of two would evict each other from the cache.
 inline Index bytes_of_row(Index bytes) { return ((bytes + LINE - 1) / LINE | 1) * LINE; }
 
 template <class T>

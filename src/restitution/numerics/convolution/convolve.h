@@ -1,6 +1,6 @@
 // Vectorised convolution of an array with an even kernel. Each lane of a vector holds one column, so the
 // code of a transform reads as if there were a single column. convolve.cpp describes the method and
-// includes this file once for each instruction set. LANE_BYTES is the size of the vectors.
+// includes this file once for each instruction set. LANE_BYTES is the size of a vector (bytes).
 
 template <class T>
 struct Lanes {
@@ -56,7 +56,8 @@ inline void transform_few(Lanes<T>* x) {
     }
 }
 
-// One stage of the transform: combine r blocks of `length` values (forward) or undo this (backward).
+// One stage of the transform: combine r blocks of `length` values (forward), or separate them
+// again (backward).
 template <int r, bool is_forward, class T>
 inline void join(Lanes<T>* x, Index length, const std::complex<T>* twiddle) {
     for (Index j = 0; j < length; ++j, twiddle += r - 1) {
@@ -103,7 +104,8 @@ void backward(const Plan<T>& plan, Lanes<T>* x, Index length, std::size_t stage 
     join<false>(radix, x, part, plan.twiddles[stage].data());
 }
 
-// Vector whose k-th value is value number `Order::of(k)` of the concatenation of a and b.
+// Vector whose k-th value is value number `Order::of(k, n)` of the concatenation of a and b, each of
+// which has n values.
 template <class Order, class Vector, int... k>
 inline Vector shuffle(Vector a, Vector b, std::integer_sequence<int, k...>) {
 #ifndef COMPILER_VECTORS
@@ -157,8 +159,8 @@ inline void copy_some(void* to, const void* from, Index some) {
         std::memcpy(to, from, some * sizeof(T));
 }
 
-// Load `some` values of a row into a vector (`load`) or store them (`store`). They are multiplied by a
-// factor, which may be outside the range of single precision.
+// `load` reads `some` values of a row into a vector, and `store` writes `some` values of a vector to a
+// row. Both multiply the values by a factor, which may be outside the range of single precision.
 template <class T, class From>
 inline typename Lanes<T>::Vector load(const From* from, double factor, Index some) {
     constexpr int count = Lanes<T>::count;
@@ -197,7 +199,7 @@ inline void store_modes(const Lanes<T>& x, std::complex<T>* to, Index some) {
 template <class T>
 struct Columns {
     const Plan<T>& plan;
-    Lanes<T>* x;  // the length of a period
+    Lanes<T>* x;  // array of one period
 
     // The caller has set x[i] for i < values.
     void transform(Index values) {
@@ -231,7 +233,7 @@ struct Convolution {
     Rows<const T> weights;
     Rows<std::complex<T>> modes;
 
-    // Two blocks of real columns are transformed together as real and imaginary parts.
+    // Two blocks of real columns are transformed together as real and imaginary parts of one block.
     template <class From>
     void into_waves(Rows<const From> values, double factor, Index first, Lanes<T>* workspace) const {
         Columns<T> columns{along_x, workspace};
@@ -309,9 +311,9 @@ struct Convolution {
     }
 };
 
-// Compute `out` = `factor_back` K ∗ (`factor` `values`), a circular convolution with periods (px, py).
-// `weights`, shape (py/2 + 1, px/2 + 1), is the transposed quadrant of the real, even spectrum of K. The
-// size of `workspace` is at least `workspace_bytes`.
+// Compute `out` = `factor_back` · K ∗ (`factor` · `values`), a circular convolution with periods
+// (px, py). `weights`, shape (py/2 + 1, px/2 + 1), is the transposed quadrant of the real, even spectrum
+// of K. The size of `workspace` is at least `workspace_bytes`.
 template <class From, class T, class To>
 void convolve(Rows<const From> values, double factor, Rows<const T> weights, Index px, Index py,
               Rows<unsigned char> workspace, double factor_back, Rows<To> out) {

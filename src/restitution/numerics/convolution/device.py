@@ -28,7 +28,7 @@ DeviceName = Literal["cpu", "gpu", "auto"]
 
 
 def is_fast(size: int) -> bool:
-    """Whether `size` has only the prime factors 2, 3, 5 and 7, as the compiled transforms need."""
+    """Whether `size` has only the prime factors 2, 3, 5 and 7; compiled transforms need this."""
     return pow(2 * 3 * 5 * 7, 64, size) == 0
 
 
@@ -75,7 +75,7 @@ class Device(Protocol):
 
 
 class _LibraryDevice:
-    """Device of a library like NumPy or CuPy (`arrays`) and its version of scipy.fft (`fft`)."""
+    """Device of an array library such as NumPy (`arrays`) and a module like scipy.fft (`fft`)."""
 
     def __init__(self, name: str, arrays: Any, fft: Any) -> None:
         self.name = name
@@ -120,7 +120,7 @@ class _LibraryDevice:
         modes = self._fft.fft(modes, n=px, axis=0)
         weights, last = spectrum.T, px // 2
         modes[: last + 1] *= weights
-        # These are the modes of negative wave number. If the period is odd, the largest wave number
+        # The other modes have negative wave numbers. If the period is odd, the largest wave number
         # also has a negative counterpart.
         modes[last + 1 :] *= weights[px - last - 1 : 0 : -1]
         modes = self._fft.ifft(modes, axis=0, norm="forward", overwrite_x=True)[:nx]

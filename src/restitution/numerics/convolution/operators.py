@@ -27,13 +27,13 @@ from restitution.numerics.convolution.device import CPU, Device, is_fast
 from restitution.numerics.reductions import max_magnitude
 
 Array = NDArray[np.float64]
-# Function that returns the kernel at integer lags i and j, two arrays that broadcast. The operator
-# may overwrite the returned array.
+# Function that returns the kernel at integer lags i and j, given as two arrays that are broadcast
+# against each other. The operator may overwrite the returned array.
 Kernel = Callable[[NDArray[np.int64], NDArray[np.int64]], Array]
 
-
 # Function that returns the spectrum of a kernel at the angular wave numbers qx and qy (rad per
-# cell, ≥ 0), two arrays that broadcast. The operator may overwrite the returned array.
+# cell, ≥ 0), given as two arrays that are broadcast against each other. The operator may overwrite
+# the returned array.
 Symbol = Callable[[Array, Array], Array]
 
 
@@ -96,7 +96,7 @@ class Convolution(_Spectral):
         return self._convolve(p, self._spectrum, out, 1.0)
 
     def single_precision(self, p: Array, out: Array | None = None) -> Array:
-        """Return K ∗ p computed in single precision; errors reach 9e-7 of the largest value."""
+        """Return K ∗ p computed in single precision; errors reach 9e-7 times the largest value."""
         return self._convolve(p, self._single_spectrum, out, 1.0)
 
 
@@ -116,7 +116,7 @@ class FreeConvolution(Convolution):
 class PeriodicConvolution(Convolution):
     """Circular convolution: the array is one period. The kernel is given by its spectrum.
 
-    Arguments are the spectrum `symbol`, the shape of the arrays and the device.
+    The arguments are the spectrum `symbol`, the shape of the arrays and the device.
     """
 
     def __init__(self, symbol: Symbol, shape: tuple[int, int], device: Device = CPU) -> None:

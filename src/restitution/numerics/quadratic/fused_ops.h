@@ -1,5 +1,5 @@
 // Steps of the minimiser, each in one pass over memory. fused_ops.py documents the steps and has the
-// equivalent array expressions. Bounds are arrays; all rows of a bound may be the same memory. The
+// equivalent array expressions. Bounds are arrays; all rows of a bound may share the same memory. The
 // compiler chooses the order of summation, so that it may use vectors.
 
 using Bounds = std::pair<Rows<const double>, Rows<const double>>;  // lower, upper

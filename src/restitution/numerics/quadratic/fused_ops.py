@@ -22,9 +22,9 @@ Bounds = tuple[Bound, Bound]  # lower, upper
 
 
 def as_rows(lower: Bound, upper: Bound, p: Array) -> Bounds:
-    """Convert bounds that are numbers to arrays of the shape of `p`, if a compiled loop takes `p`.
+    """Convert bounds that are numbers to arrays of the shape of `p`, if `loop_takes` accepts `p`.
 
-    The compiled loops require arrays. Only one row of each array is stored and broadcast to all
+    The compiled loops require arrays. Each array stores only one row, which is broadcast to all
     rows.
     """
 
@@ -41,8 +41,8 @@ def projected_gradient(p: Array, g: Array, b: Array, bounds: Bounds, out: Array)
     """Turn the product K p in `g` into the gradient K p − b, and write its projection to `out`.
 
     The projected gradient is zero at nodes that lie on a bound and that a descent step would move
-    out of bounds. At the other nodes it equals the gradient. Return its largest magnitude, which is
-    the violation of the optimality conditions.
+    out of bounds. At the other nodes (free nodes) it equals the gradient. Return the largest
+    magnitude of the projected gradient, which is the violation of the optimality conditions.
     """
     g -= b
     free = g * _free(p, g, bounds)
@@ -73,9 +73,10 @@ def projected_direction(
     r: Array,
     bounds: Bounds,
 ) -> tuple[float, bool]:
-    """Replace the step d at p by `beta` d − `length` z on the free nodes, truncated at the bounds.
+    """Replace the step d from p by `beta` d − `length` z, truncated at the bounds.
 
-    Return r·d and whether a bound truncated the step at any node.
+    The new step is zero at nodes that are not free (`projected_gradient`). Return r·d and whether a
+    bound truncated the step at any node.
     """
     np.multiply(d, beta, out=d, dtype=np.float64)
     np.subtract(d, np.multiply(z, length, dtype=np.float64), out=d)

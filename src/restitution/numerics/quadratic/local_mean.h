@@ -26,7 +26,7 @@ struct Axis {
     }
 };
 
-// Values at the places, in row-major order.
+// Sums at all places, then numbers of nonzero nodes at all places, both in row-major order.
 struct PlaceSums {
     std::vector<double> values;
 
@@ -42,8 +42,8 @@ void local_sums(Rows<const T> r, Rows<double> sums, Rows<double> nodes) {
     const Axis<T> along_x(r.count, sums.count), along_y(r.length, across);
     const auto some = [&](Index first, Index last) {
         PlaceSums found{std::vector<double>(2 * places)};
-        // Column sums over the rows of a part, weighted for the two neighbouring places: `all` and
-        // `next` sum the values, `here` and `there` count the nonzero nodes.
+        // Weighted sums of each column over the rows of part k. `all` (for place k) and `next` (for
+        // place k + 1) sum the values; `here` and `there` count the nonzero nodes in the same way.
         std::vector<T> all(r.length), next(r.length), here(r.length), there(r.length);
         const auto add = [&](std::vector<T>& column, double* at) {
             for (Index l = 0; l < along_y.parts(); ++l) {

@@ -39,7 +39,7 @@ def subtract_local_mean(r: Array, share: float, sums: Array, nodes: Array, out: 
 def damp_local_mean(r: Array, share: float, places: int, out: Array) -> None:
     """Write r minus `share` times its local mean into `out`, and zero where r = 0.
 
-    There are `places` points of the lattice along each axis. `out` may be `r`.
+    The lattice has `places` points along each axis. `out` may be `r`.
     """
     sums, nodes = np.empty_like(r, dtype=np.float64, shape=(2, places, places))
     local_sums(r, sums, nodes)
@@ -47,7 +47,7 @@ def damp_local_mean(r: Array, share: float, places: int, out: Array) -> None:
 
 
 def _hat_weights(r: Array, places: Array) -> list[Array]:
-    """Linear weights of the nodes of `r` at the places: one matrix along x and one along y."""
+    """Linear weights of the nodes of `r` at the places: a matrix along x and a matrix along y."""
     hats = []
     for n, m in zip(r.shape, places.shape, strict=True):
         node, place = (np.cumsum(np.ones_like(places, shape=k)) for k in (n, m))

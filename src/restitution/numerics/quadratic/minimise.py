@@ -7,8 +7,8 @@ gradient g = K p − b, the solution satisfies the conditions of Karush, Kuhn an
 
     g ≥ 0 where p = lower,   g = 0 between the bounds,   g ≤ 0 where p = upper.
 
-The largest violation of these three conditions is the `residual`. The caller decides what the
-bounds mean (contact, yield, adhesion).
+The largest violation of these three conditions measures the error of a solution. The caller decides
+what the bounds mean (contact, yield, adhesion).
 """
 
 from __future__ import annotations
@@ -40,10 +40,11 @@ _ROUNDING = 10.0
 # Each step updates the gradient. The gradient is computed anew when the violation falls below this
 # multiple of the estimated error of the updated gradient.
 _CLEAR = 3.0
-# If a bound truncates the projected step and the optimal step exceeds this fraction of it, take the
-# full step, so that nodes reach the bound.
+# If a bound truncates the projected step and the optimal step exceeds this fraction of the
+# projected step, take the full projected step, so that nodes reach the bound.
 _FULL_STEP_FRACTION = 0.8
-# Initial trial length. It is near the typical accepted length, because bounds truncate early steps.
+# Initial trial length, as a multiple of the preconditioned gradient. It is near the typical
+# accepted length, which is below 1 because bounds truncate early steps.
 _INITIAL_STEP = 0.3
 # Smallest and largest factor by which the trial length changes (before damping), and the exponent
 # that damps the change. Damping is needed because the optimal length oscillates from step to step.
@@ -123,13 +124,13 @@ def minimise_quadratic(
     returned instead, if the violation plus the estimated error of this gradient is within
     `tolerance`.
 
-    The first gradient is computed with K, or with `K_single` if `K_start` is given or the estimate
-    is accepted. Each step updates the gradient by the product of K and the step. The rounding
-    errors of these products are added up as independent errors. When the violation is no longer
-    well above the sum of these errors, the gradient is computed with K again. With
-    `mean_violation`, the violation is the root mean square over the nodes where the projected
-    gradient is not zero, instead of the largest magnitude. If the solve does not converge,
-    `converged` of the result is False; no exception is raised.
+    The first gradient is computed with K, or with `K_single` if `K_start` is given or
+    `accept_estimated_gradient` is true. Each step updates the gradient by the product of K and the
+    step. The rounding errors of these products are added up in quadrature. When the violation is no
+    longer well above this sum, the gradient is computed with K again. With `mean_violation`, the
+    violation is the root mean square of the projected gradient over the nodes where it is not zero,
+    instead of its largest magnitude. If the solve does not converge, `converged` of the result is
+    False; no exception is raised.
     """
     # Work arrays that only determine the direction have the same precision as the products.
     work_type: Any = np.float64 if problem.K_single is None else np.float32

@@ -39,9 +39,9 @@ Mask = NDArray[np.bool_]
 # At level n the spacing is 2ⁿ times the spacing of the finest grid.
 Operators = Callable[[tuple[int, int], int], tuple[Convolution, SpectralFilter]]
 
-# A grid starts from a guess on the next coarser grid if its shorter edge has at least this number
-# of nodes: the first number for the finest grid, the second for coarser grids. On smaller grids the
-# guess costs more time than it saves.
+# The solve on a grid starts from a guess on the next coarser grid if the shorter edge of the grid
+# has at least this number of nodes: the first number for the finest grid, the second for coarser
+# grids. On smaller grids the guess costs more time than it saves.
 MIN_NODES_FOR_GUESS, _MIN_NODES_TO_COARSEN = 120, 80
 # Tolerance on coarser grids, as a fraction of the largest b. A smaller tolerance gains nothing,
 # because prolongation errors are larger.
@@ -57,12 +57,12 @@ _PLACES = 8  # number of places along each axis for which local means are comput
 # In a nearly fully plastic contact, the gradient is used to correct the contact edge of a guess.
 # First number: the guess is corrected if at most this fraction of the contact nodes is strictly
 # between the bounds. Second number: size of the correction, as a fraction of the pressure that
-# would make the gradient of a node zero if it acted on this node alone. Fractions from 0.15 to 0.5
-# work nearly as well.
+# would make the gradient of a node zero if it acted on this node alone. Values from 0.15 to 0.5 of
+# the second number work nearly as well.
 _MAX_FREE_FRACTION, _GAP_FRACTION = 0.05, 0.3
-# The local mean is damped if the Rayleigh quotient of K·M on the free nodes exceeds the first
-# number, where M is the approximate inverse of K. The second number is the largest (weakest)
-# damping factor that still saves time.
+# The local mean is damped if the Rayleigh quotient of K·M on the free nodes (those strictly between
+# the bounds) exceeds the first number, where M is the approximate inverse of K. The second number
+# is the largest (weakest) damping factor that still saves time.
 _USUAL_STIFFNESS, _MAX_DAMPING_FACTOR = 3.5, 0.7
 
 
@@ -114,7 +114,7 @@ def solve_multilevel(
             tolerance=tolerance,
             max_iterations=max_iterations,
             K_start=None if Kp is None else Kp[window],
-            # A window is followed by the check of all nodes, which computes the exact gradient.
+            # After the solve on a window, the check of all nodes computes the exact gradient.
             accept_estimated_gradient=not whole,
         )
         if whole:
@@ -141,13 +141,13 @@ def mean_damped_preconditioner(inverse: Operator, p: Array, b: Array, upper: Bou
 
     If `inverse` does not overestimate the response to a mean, it is returned without damping.
 
-    The mean of a residual, as a field, is constant on the contact nodes and drops to zero at the
+    The mean of a residual is a field that is constant on the contact nodes and drops to zero at the
     contact edge. The inverse of a smoothing operator amplifies the short waves of this drop, more
     so on finer grids (McLean and Steinbach 1999, Adv. Comput. Math. 11, 271–286). So `inverse`
-    overestimates the response to the constant part, by up to 30 times on rough contacts. Conjugate
-    gradients would have to correct this part again whenever nodes reach or leave a bound. The
-    damping factor follows from the guess `p`, for which K p = b on the free nodes. The nearly
-    constant part is represented by local means around 8 × 8 points of a coarse lattice.
+    overestimates the response to this field, by up to 30 times on rough contacts. Conjugate
+    gradients would have to correct this error again whenever nodes reach or leave a bound. The
+    damping factor follows from the guess `p`, for which K p = b on the free nodes. Instead of one
+    mean over all nodes, local means around 8 × 8 points of a coarse lattice are damped.
     """
     factor = mean_damping(inverse, p, b, upper)
     if factor == 1.0:
@@ -162,7 +162,7 @@ def mean_damped_preconditioner(inverse: Operator, p: Array, b: Array, upper: Bou
 
 
 def mean_damping(inverse: Operator, p: Array, b: Array, upper: Bound) -> float:
-    """Return the factor of `mean_damped_preconditioner`, or 1 where no damping is needed."""
+    """Return the factor of `mean_damped_preconditioner`, or 1 if no damping is needed."""
     free, free_nodes, contact_nodes = _between_the_bounds(p, upper)
     if free_nodes <= 0.5 * contact_nodes:  # no guess, or most contact nodes yield
         return 1.0
@@ -176,7 +176,7 @@ def mean_damping(inverse: Operator, p: Array, b: Array, upper: Bound) -> float:
 def may_coarsen(shape: tuple[int, ...], periodic: bool) -> bool:
     """Whether a grid of this shape is large enough to be coarsened.
 
-    If `periodic`, its numbers of nodes must also be even.
+    If `periodic` is true, the numbers of nodes along both axes must also be even.
     """
     even = all(n % 2 == 0 for n in shape)
     return min(shape) >= _MIN_NODES_TO_COARSEN and (even or not periodic)

@@ -2,14 +2,14 @@
 
 The problem is that of `multilevel` with an infinite upper bound: an elastic contact. Means over
 2 × 2 nodes hide the roughness between these nodes, so on a rough surface the coarser grid has far
-too many nodes in contact. But the mean pressure of this grid is nearly right. Therefore the short
+too many nodes in contact. But the mean pressure on this grid is nearly right. Therefore the short
 waves of the pressure are added to the guess, and then negative pressures are set to zero and the
 other pressures are lowered until the local means are again those of the coarser grid.
 
-The same means are protected during the iterations. The approximate inverse turns the residual of
-short waves on separate contact patches into a change of the mean pressure, which later iterations
-would have to take back. So the preconditioner damps the local means of its result as well as those
-of its argument (see `multilevel.mean_damped_preconditioner`).
+The local means are also protected during the iterations. The approximate inverse turns the
+residual of short waves on separate contact patches into a change of the mean pressure, which later
+iterations would have to undo. So the preconditioner damps the local means of its result as well as
+those of its argument (see `multilevel.mean_damped_preconditioner`).
 """
 
 from __future__ import annotations
@@ -57,9 +57,10 @@ def solve_near_guess(
 
     The arguments are those of `solve_multilevel`, but `tolerance` limits the root mean square of
     the violation, because the largest violation often occurs at a few nodes that hardly affect the
-    result. The window includes the nodes where the guess has pressure, and the nodes that overlap
-    if the bodies are displaced as on the coarser grid. The other nodes are neither solved nor
-    checked. Return the result on the window, the window, and the number of products with K.
+    result. The window includes the nodes where the guess has pressure, and the nodes where the
+    bodies would overlap with the displacement of the coarser grid. The other nodes are neither
+    solved nor checked. Return the result on the window, the window, and the number of products with
+    K.
     """
     size = b.shape[0], b.shape[1]
     p, displacement, window = np.zeros_like(b), np.zeros_like(b), None
@@ -107,7 +108,7 @@ def _solve_from(
     tolerance: float,
     max_iterations: int,
 ) -> Minimum:
-    """Minimise from the `guess` of p and its `displacement` K p, both of the coarser grid."""
+    """Minimise from the `guess` of p and its `displacement` K p, both from the coarser grid."""
     K, inverse = operators
     start = add_short_waves(guess, displacement, inverse, b) if guess.any() else guess
     return minimise_quadratic(
@@ -124,7 +125,7 @@ def _solve_from(
 def add_short_waves(guess: Array, displacement: Array, inverse: Operator, b: Array) -> Array:
     """Add the pressure −`inverse` (K p − b) to the guess p, and keep p ≥ 0 and the local means.
 
-    `displacement` is K p of the coarser grid, which lacks only short waves; it is overwritten.
+    `displacement` is K p from the coarser grid, so it lacks only short waves. It is overwritten.
     """
     p: Any = guess.astype(np.float32)
     free, change = np.empty_like(p), np.empty_like(p)
@@ -144,7 +145,7 @@ def balanced_preconditioner(inverse: Operator, p: Array, b: Array) -> Operator:
     """Return `inverse` with damped local means, both of its argument and of its result.
 
     In total, the response to a local mean is damped by the factor of `mean_damped_preconditioner`:
-    the means of the argument and of the result are each damped by its square root.
+    the means of the argument and of the result are each damped by the square root of this factor.
     """
     share = 1.0 - math.sqrt(mean_damping(inverse, p, b, math.inf))
     if share == 0.0:

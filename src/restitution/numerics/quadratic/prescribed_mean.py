@@ -4,8 +4,8 @@
 
 With the Lagrange multiplier D of the prescribed mean, a scalar, p minimises ½ pᵀK p − pᵀ(D − h).
 The mean of p increases with D, so a bracketed secant method finds D. Every solve for p starts from
-the previous p, with a tolerance that is proportional to the current error of D. The first D, p and
-slope of the secant method come from the same problem on the next coarser grid.
+the previous p, with a tolerance that is proportional to the current error of D. The initial D, p
+and slope dD/dmean come from the solution of the same problem on the next coarser grid.
 """
 
 from __future__ import annotations
@@ -84,9 +84,9 @@ def minimise_at_mean(
     """Minimise ½ pᵀK p + pᵀh with 0 ≤ p ≤ `upper` at a prescribed mean of p.
 
     The mean must be below `upper`. `h` has shape (nx, ny) and is not negative. The operators are
-    periodic and positive definite. `max_iterations` limits each solve. `level` is the level of the
-    grid of `h` (0: finest). If the search does not converge, `converged` of the minimum is False;
-    no exception is raised.
+    periodic and positive definite. `max_iterations` limits the iterations of each solve. `level` is
+    the level of the grid of `h` (0: finest). If the search does not converge, `converged` of the
+    minimum is False; no exception is raised.
     """
     p = np.zeros_like(h)
     multiplier = target.compliance * target.mean + 0.5 * float(h.mean())
@@ -134,7 +134,7 @@ class _Bracket:
     """Secant steps to the root of an increasing function that is negative at zero."""
 
     def __init__(self, slope: float, least_slope: float) -> None:
-        """Begin with a guess `slope` of the inverse slope dx/dy, at least `least_slope`."""
+        """Begin with a guess `slope` of the slope dx/dy, which never falls below `least_slope`."""
         self.slope = slope
         self._least_slope = least_slope
         self._low, self._high = 0.0, math.inf
