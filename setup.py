@@ -1,4 +1,4 @@
-"""The part that is compiled. Where that fails NumPy does it; `restitution --version` says which."""
+"""Compile the loops. If this fails, NumPy computes the same; `restitution --version` shows which."""
 
 import sys
 from pathlib import Path
@@ -7,11 +7,11 @@ from pybind11.setup_helpers import ParallelCompile, Pybind11Extension, build_ext
 from setuptools import setup
 
 FOLDER = Path("src/restitution/numerics")
-# Products and sums are fused, whatever the compiler's habit; no error numbers, no traps.
+# Fuse products and sums with every compiler. Do not set errno, and assume that operations do not trap.
 FLAGS = ["-O3", "-fopenmp-simd", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=fast"]
 MSVC_FLAGS = ["/O2", "/utf-8"]
 
-ParallelCompile(default=0).install()  # both files at once
+ParallelCompile(default=0).install()  # compile the files in parallel
 setup(
     ext_modules=[
         Pybind11Extension(
