@@ -1,4 +1,4 @@
-"""Compile the loops. If this fails, NumPy computes the same; `restitution --version` shows which."""
+"""Compile the loops; without them NumPy computes the same (`restitution --version` shows which)."""
 
 import sys
 from pathlib import Path
@@ -7,7 +7,7 @@ from pybind11.setup_helpers import ParallelCompile, Pybind11Extension, build_ext
 from setuptools import setup
 
 FOLDER = Path("src/restitution/numerics")
-# Fuse products and sums with every compiler. Do not set errno, and assume that operations do not trap.
+# Fuse products and sums with every compiler. Do not set errno; assume that nothing traps.
 FLAGS = ["-O3", "-fopenmp-simd", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=fast"]
 MSVC_FLAGS = ["/O2", "/utf-8"]
 
