@@ -234,7 +234,7 @@ def _accounted(state: CohesiveState, step: _Step, smooth: bool) -> CohesiveState
 
 
 def _try(previous: CohesiveState | None, state: CohesiveState, at: float, residual: float) -> _Step:
-    """Make a trial step to the indentation `at`, with a first guess extrapolated from two states."""
+    """Make a trial step to the indentation `at`. Its first guess extrapolates two states."""
     contact, box = state.contact, state.box
     limit, convolutions = bound_after(state, at, residual)
     p, u = state.box_pressure, state.box_displacement

@@ -94,7 +94,7 @@ class State:
 
     @property
     def force(self) -> float:
-        """Normal force (N): the sum of the pressure over all nodes, times the cell area."""
+        """Normal force (N), the sum of the pressure over all nodes times the cell area."""
         return float(self.box_pressure.sum()) * self.contact.grid.cell_area
 
     @property
@@ -109,7 +109,7 @@ class State:
 
     @property
     def contact_area(self) -> float:
-        """Real contact area (m²): number of nodes in contact times cell area."""
+        """Real contact area (m²), the number of nodes in contact times the cell area."""
         return self.contact_nodes * self.contact.grid.cell_area
 
     @property
@@ -124,7 +124,7 @@ class State:
 
     @property
     def mean_gap(self) -> float:
-        """Mean of the deformed gap (m): the distance between the mean planes of the surfaces.
+        """Mean of the deformed gap (m), the distance between the mean planes of the surfaces.
 
         Raises:
             CaseError: The contact is not periodic.
@@ -136,18 +136,21 @@ class State:
 
     @property
     def stored_energy(self) -> float:
-        """Elastic energy ½ Σ p u hx hy (J): pressure p, elastic displacement u, cell area hx hy."""
+        """Elastic energy ½ Σ p u hx hy (J).
+
+        p is the pressure, u the elastic displacement and hx hy the cell area.
+        """
         twice = float(np.einsum("ij,ij->", self.box_pressure, self.box_displacement))
         return 0.5 * twice * self.contact.grid.cell_area
 
     @property
     def plastic_volume(self) -> float:
-        """Plastic volume (m³): the plastic displacement summed over the nodes, times cell area."""
+        """Plastic volume (m³), the sum of the plastic displacement times the cell area."""
         return float(self.plastic_displacement.sum()) * self.contact.grid.cell_area
 
     @property
     def loading_work(self) -> float:
-        """Work done on the bodies so far (J): elastic energy + plastic work − adhesive work."""
+        """Work done on the bodies so far (J), elastic energy + plastic work − adhesive work."""
         return self.stored_energy + self.plastic_work - self.adhesive_work
 
     @property

@@ -73,7 +73,7 @@ class TangentialState:
 
     @property
     def force(self) -> float:
-        """Tangential force (N): the sum of the traction over all nodes, times the cell area."""
+        """Tangential force (N), the sum of the traction over all nodes times the cell area."""
         return float(self.box_traction.sum()) * self.normal.contact.grid.cell_area
 
     @property
@@ -89,7 +89,7 @@ class TangentialState:
 
     @property
     def sticking(self) -> NDArray[np.bool_]:
-        """Whether each node of `box` sticks (bool): its traction is below Coulomb's limit."""
+        """Whether each node of `box` sticks (bool), with a traction below Coulomb's limit."""
         return np.abs(self.box_traction) < _limit(self.normal, self.friction, self.box)
 
     def _summary(self) -> list[str]:

@@ -21,7 +21,7 @@ from restitution.theory import Hertz, Kendall
 # Limits beyond which an input is doubtful.
 _TILTED = 0.5  # fraction of the variance of the heights that a plane explains
 _OBLONG = 0.01  # relative difference of the edges of a pixel
-_STEEP = 0.5  # rms slope, beyond which small-slope theory is inaccurate
+_STEEP = 0.5  # rms slope beyond which small-slope theory is inaccurate
 # Range of the ratio of the pressure of a fully plastic contact to E*: from very soft metals to the
 # ideal strength of solids.
 _PRESSURES = (1e-5, 0.3)

@@ -57,9 +57,9 @@ def predicted_radius(pair: Pair, indentation: float, yield_pressure: float = mat
 def adhesive_nodes(state: State) -> float:
     """Number of nodes per pull-off radius of an asperity; inf without adhesion.
 
-    It is a_c/h. a_c is the contact radius at pull-off (`pull_off_radius`) of a sphere of radius
-    `radius_of_asperities`, and h the larger spacing of the grid. For a cohesive contact, the result
-    is inf if the grid resolves the range of the attraction, and 0 otherwise.
+    The number is a_c/h. Here a_c is the contact radius at pull-off (`pull_off_radius`) of a sphere
+    of radius `radius_of_asperities`, and h is the larger spacing of the grid. For a cohesive
+    contact, the result is inf if the grid resolves the range of the attraction, and 0 otherwise.
     """
     contact = state.contact
     if not contact.adhesive:
