@@ -36,14 +36,15 @@ _ACCURACY = 1e-3  # tolerance of solves between releases, as a fraction of the c
 
 # The balance (see the top of this file) is determined by the mean of the energy release rate G over
 # the edge nodes that are about to move: those where G exceeds the fraction _ACTIVE of the work of
-# adhesion. The balance is interpolated between the states before (0) and after (1) a retraction, or
-# extrapolated backwards, at most to _EARLIEST.
+# adhesion. The balance is interpolated between the states before a retraction (position 0) and
+# after it (position 1), or extrapolated backwards, at most to the position _EARLIEST.
 _ACTIVE, _EARLIEST = 0.8, -0.5
 # Smallest pull-off radius of an asperity (cells) for which balances are used. On coarser grids most
 # nodes leave the contact because the bodies separate, not because G reaches the work of adhesion.
 _RESOLVED = 2.0
-# To find the balance of a loaded contact, the contact is retracted by the fraction _RETREAT of the
-# pull-off displacement of a punch, and solved with the tolerance _BALANCE_RESIDUAL.
+# To find the balance of a loaded contact, the bodies are retracted by the fraction _RETREAT of the
+# pull-off displacement of a flat punch with the same contact area. The retracted contact is solved
+# with the tolerance _BALANCE_RESIDUAL.
 _RETREAT, _BALANCE_RESIDUAL = 0.05, 1e-5
 # A contact grows by rings of nodes around it. If less than this fraction of the nodes of a ring is
 # released again, the next ring is twice as wide.
@@ -183,9 +184,11 @@ def _surrounded(touching: Mask, cells: int) -> Mask:
 
 
 def _is_better(wider: State, state: State) -> bool:
-    """Whether the contact grows from `state` to `wider`, both at the same indentation.
+    """Whether `wider` is preferred to `state`, both at the same indentation.
 
-    It does if this lowers the energy or, with `pohrt-popov`, adds nodes.
+    The wider contact is preferred if its energy (elastic energy minus work of adhesion times area)
+    is lower. With `pohrt-popov`, or if `state` has no contact nodes, it is preferred if it has more
+    contact nodes.
     """
     contact = state.contact
     if contact.detachment == "pohrt-popov" or not state.contact_nodes:
@@ -244,7 +247,8 @@ def balance_of(state: State) -> tuple[float, float]:
 
     At the balance, the energy release rate equals the work of adhesion. The function solves once
     more with the same contact area, at an indentation that is smaller by a fraction of the pull-off
-    displacement of a flat punch. If no balance exists, it returns the values of `state`.
+    displacement of a flat punch with this area. If no balance exists, it returns the values of
+    `state`.
     """
     contact = state.contact
     if state.contact_nodes == 0:

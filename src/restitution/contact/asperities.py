@@ -30,7 +30,7 @@ def elongation_of(gap: Array, spacing: tuple[float, float]) -> Array:
 
     Args:
         gap: Gap before loading (m), shape (nx, ny).
-        spacing: Distances of nodes along x and y (m).
+        spacing: Distances between neighbouring nodes along x and y (m).
 
     Returns:
         Elongation (dimensionless), shape of `gap`, read-only: 0 at a round asperity, 1 along a
@@ -73,7 +73,7 @@ def crest_gap_of(gap: Array) -> Array:
 
 
 def _elongation(gap: Array, spacing: tuple[float, float]) -> Array:
-    """`elongation_of` on all rows at once."""
+    """Return the result of `elongation_of`, computed for all rows at once."""
     inner = slice(1, -1)
     hx, hy = spacing
     elongation = np.zeros(gap.shape)

@@ -110,7 +110,7 @@ class Pair:
         beside the force and by β Q/r ahead of it and behind it. With the shear moduli G and sums
         over the bodies, α = Σ (1 − ν)/(2πG) and β = Σ 1/(2πG). The mean of α and β is 1/(πG*).
         """
-        # Poisson's ratio of each body and, with its shear modulus G, 1/(2πG).
+        # Poisson's ratio and 1/(2πG) of each body, where G is its shear modulus.
         parts = [
             (body.poissons_ratio, (1 + body.poissons_ratio) / (math.pi * body.youngs_modulus))
             for body in (self.first, self.second)

@@ -9,27 +9,28 @@ an expanding cavity (Johnson 1970, J. Mech. Phys. Solids 18, 115–126; Johnson 
 
 c₀ is the ratio of the largest pressure to Y at first yield of a sphere (`yield_coefficient` in
 `theory`). c₁ and c₂ are fitted constants. m measures the strain as an elastic pressure. For a
-sphere with the contact radius a, m is (2/π) E*a/R, the largest pressure of an elastic contact of
-this radius. At a node of a rough surface at the indentation δ
+sphere of radius R with the contact radius a, m is (2/π) E*a/R, the largest pressure of an elastic
+contact of this radius. At a node of a rough surface at the indentation δ
 
     m = m₀ [2(δ − h_c)/(2δ − h_c)]^s,    m₀ = p_e(2δ)/√2.
 
 p_e(2δ) is the pressure at the same node between *elastic* bodies of this shape at twice the
-indentation. The factors 2 and √2 are those of a sphere: an elastic sphere at 2δ has the contact
-radius of a plastic sphere at δ, and √2 times the largest pressure of an elastic sphere at δ. While
-asperities are in separate contact, m follows the slope of an asperity. Once the asperity contacts
-have merged, m follows the slope of the bodies. The bound depends only on the indentation.
-Therefore, as with a constant bound, the state does not depend on the loading path.
+indentation. The factors 2 and √2 are those of a sphere. An elastic sphere at 2δ has the contact
+radius of a plastic sphere at δ. Its largest pressure is √2 times that of an elastic sphere at δ,
+and the division by √2 removes this factor. While asperities are in separate contact, their slope
+determines m. Once the asperity contacts have merged, the slope of the bodies determines m. The
+bound depends only on the indentation. Therefore, as with a constant bound, the state does not
+depend on the loading path.
 
 The fraction in brackets corrects the depth of an asperity whose crest has an initial gap h_c. Such
-an asperity is deformed by δ − h_c, so p_e should be taken at 2(δ − h_c), but at the indentation 2δ
-the asperity is deformed by 2δ − h_c. Without the correction, COR is up to 6 % too high just after a
-new asperity has come into contact. The fraction is 1 for the asperity that touches first. The
-exponent s decreases from 1 for separate asperities to 0 for merged ones:
+an asperity is deformed by δ − h_c, so p_e should belong to a deformation of 2(δ − h_c). At the
+indentation 2δ, however, the asperity is deformed by 2δ − h_c. Without the correction, COR is up to
+6 % too high just after a new asperity has come into contact. The fraction is 1 for the asperity
+that touches first. The exponent s decreases from 1 for separate asperities to 0 for merged ones:
 
     s = max(1 − (p_H/m₀)^1.5, 0).
 
-p_H is the Hertz pressure at this node between smooth bodies. Their force is that of the elastic
+p_H is the Hertz pressure at this node between smooth bodies under the same force as the elastic
 rough bodies at the indentation 2δ. Where p_H ≥ m₀, the asperity contacts have merged.
 
 A ridge yields in plane strain. This constrains plastic flow more than at a round asperity. With q
@@ -42,7 +43,8 @@ coefficients become
 ridge is the ratio of the pressures at first yield of a cylinder and of a sphere, 1.79 Y and 1.61 Y
 for ν = 0.3 (Johnson 1985, §§4.2, 4.4).
 
-All other constants were fitted to finite elements (docs/validation.md lists them and their range).
+All other constants were fitted to finite element results (docs/validation.md lists the constants
+and their range).
 c₂ is above 3 because it also accounts for pile-up around a deep contact, which the model does not
 resolve. The bound reaches c₂ Y at the largest indentation of the finite element results. If the
 material hardens with a tangent modulus, Y is replaced by the flow stress at the representative
@@ -81,13 +83,12 @@ _TABOR = 0.2  # representative strain divided by a/R (contact radius a, radius R
 
 
 def yield_bound(contact: Contact, indentation: float, residual: float) -> tuple[Array, int]:
-    """Return the pressure bound (Pa) at `indentation` (m), and a number of convolutions.
+    """Return the pressure bound (Pa) at `indentation` (m), and the number of convolutions it took.
 
-    The bound is a read-only array of the shape of the grid. The second result is the number of
-    convolutions computed for it. The bound is computed from the pressure of an elastic solve.
-    `residual` is the tolerance of the later solve under this bound. The elastic solve has a larger
-    tolerance, because the bound depends only on the logarithm of the elastic pressure. The elastic
-    contact may reach the edge of the grid. Raises `NotConvergedError`.
+    The bound is a read-only array of the shape of the grid. It is computed from the pressure of an
+    elastic solve. `residual` is the tolerance of the later solve under this bound. The elastic
+    solve has a larger tolerance, because the bound depends only on the logarithm of the elastic
+    pressure. The elastic contact may reach the edge of the grid. Raises `NotConvergedError`.
     """
     bound = np.full(contact.grid.nodes, contact.first_yield_pressure)
     tolerance = min(_RESIDUAL_FACTOR * residual, _LARGEST_RESIDUAL)
@@ -118,9 +119,9 @@ def pressure_bound(
 
 
 def bound_after(state: State, indentation: float, residual: float) -> tuple[Array | float, int]:
-    """Return the results of `pressure_bound` for a step from `state`, where the bound cannot fall.
+    """Return the results of `pressure_bound` for a step from `state` to `indentation`.
 
-    The convolutions do not include those of `state`.
+    The bound of a node never falls below its value in `state`.
     """
     if indentation <= state.indentation:
         return state.bound, 0
@@ -159,7 +160,7 @@ def _depth_ratio(crest_gap: Array, indentation: float) -> Array:
 
 
 def _smooth_pressure(contact: Contact, box: Box, nodes: Nodes, force: float) -> Array:
-    """Hertzian pressure (Pa) of the smooth bodies under `force` (N) at the `nodes` of a box."""
+    """Hertzian pressure (Pa) of the smooth bodies under `force` (N) at the `nodes` of `box`."""
     smooth = Hertz(contact.pair.radius, contact.pair.contact_modulus)
     x, y = contact.grid.x[box[0]] - contact.apex[0], contact.grid.y[box[1]] - contact.apex[1]
     return smooth.pressure(np.hypot(x[nodes[0]], y[nodes[1]]), smooth.indentation(force))

@@ -65,7 +65,7 @@ class CohesiveState(State):
 
     Attributes:
         interaction_energy: Energy of the interface law (J); 0 for bodies far apart.
-        far_force: Part of the normal force from outside `box` (N).
+        far_force: Normal force (N) of the parts of the bodies outside `box`.
         adhesive_loss: Energy dissipated so far by jumps between equilibria (J).
         jumps: Number of these jumps so far.
         unaccounted: Work of the force minus the change of energy (J), summed over all steps without
@@ -82,7 +82,7 @@ class CohesiveState(State):
 
     @property
     def force(self) -> float:
-        """Normal force (N), including the attraction of the bodies outside `box` and the grid."""
+        """Normal force (N), including the attraction outside `box` and outside the grid."""
         return super().force + self.far_force
 
     @property
@@ -310,8 +310,8 @@ def is_unique(state: CohesiveState) -> bool:
     K is the operator from pressure to elastic displacement, and φ the interaction energy per area
     as a function of the gap. An upper bound of the spectral radius is the largest row sum of the
     matrix. In a periodic contact the row sums of K vanish. The upper bound is then the compliance
-    λ/(πE*) of the longest wave (wavelength λ), times the largest −φ″ at any gap from the present
-    smallest gap upwards.
+    λ/(πE*) of the longest wave (wavelength λ), times the largest −φ″ of all gaps that are not
+    smaller than the present smallest gap.
     """
     contact = state.contact
     if contact.periodic:

@@ -43,7 +43,7 @@ ACCURACY = 2e-4
 _CORRECTION = 10.0
 _FIRST_STEP = 0.25  # length of the first step, in units of the equilibrium separation z₀
 
-# Longest step of unloading under tension, in units of z₀ plus the adhesive length.
+# Longest step of unloading under tension, as a fraction of the sum of z₀ and the adhesive length.
 _UNDER_TENSION = 0.15
 # Shortest step, in units of z₀. If even this step fails, the path cannot be followed, and an error
 # is raised.
@@ -51,7 +51,8 @@ _LEAST_STEP = 1e-5
 _MOST_STEPS = 5000
 _FARTHEST = 0.02  # unloading ends where the tension is below this fraction of the largest tension
 
-# When the box must grow, it is made larger than needed by this factor, so that it seldom grows.
+# When the box must grow, the new box is large enough for an indentation that is larger by about
+# this factor, so that the box seldom grows.
 _WIDER = 1.3
 
 
@@ -86,7 +87,7 @@ def load_cohesive(
 def _move(
     state: CohesiveState, indentation: float, residual: float, accuracy: float = ACCURACY
 ) -> CohesiveState:
-    """Follow the path from `state` to `indentation`; return its end with all its convolutions."""
+    """Follow the path to `indentation`; return its end with the convolutions of the whole path."""
     end, convolutions = state, 0
     for end in follow(state, indentation, residual=residual, accuracy=accuracy):
         convolutions += end.convolutions
@@ -162,14 +163,14 @@ def follow(
 ) -> Iterator[CohesiveState]:
     """Yield the equilibria from `state` (not included) to the indentation `target`.
 
-    If `target` is infinite, the caller must end the path. Raises `NotConvergedError` if an
+    If `target` is infinite, the caller must stop the iteration. Raises `NotConvergedError` if an
     equilibrium cannot be followed.
     """
     contact = state.contact
     z0 = contact.equilibrium_separation
     sign = 1.0 if target > state.indentation else -1.0
     length = _FIRST_STEP * z0
-    if state.smallest_gap < 1.1 * z0:  # in contact, a step is at least 2 % of the indentation
+    if state.smallest_gap < 1.1 * z0:  # in contact, start with 2 % of the indentation or more
         length = max(length, 0.02 * abs(state.indentation))
     previous: CohesiveState | None = None
     rejected = 0  # convolutions of steps that were not accepted
@@ -234,7 +235,7 @@ def _accounted(state: CohesiveState, step: _Step, smooth: bool) -> CohesiveState
 
 
 def _try(previous: CohesiveState | None, state: CohesiveState, at: float, residual: float) -> _Step:
-    """Make a trial step to the indentation `at`, starting from an extrapolation of two states."""
+    """Make a trial step to the indentation `at`. Its first guess extrapolates two states."""
     contact, box = state.contact, state.box
     limit, convolutions = bound_after(state, at, residual)
     p, u = state.box_pressure, state.box_displacement
@@ -276,13 +277,13 @@ def _parabola(previous: CohesiveState, state: CohesiveState, new: CohesiveState)
 
 
 def _scale(state: CohesiveState, *, loading: bool) -> float:
-    """Energy (J) that scales the errors of a step: they may reach `accuracy` times this energy."""
+    """Reference energy (J): the error of a step may reach `accuracy` times this energy."""
     scale = state.stored_energy + abs(state.interaction_energy)
     return scale + state.plastic_work if loading else scale
 
 
 def _on_wider_box(state: CohesiveState, at: float, residual: float) -> CohesiveState:
-    """Move `state` to a larger box if bodies at the indentation `at` interact outside its box."""
+    """Solve `state` on a larger box if bodies at the indentation `at` interact outside its box."""
     needed = interacting_box(state.contact, at, state)
     if union(state.box, needed) == state.box:
         return state

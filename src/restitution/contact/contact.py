@@ -36,8 +36,8 @@ EQUILIBRIUM_SEPARATION = 0.3e-9  # default range of the attraction z₀ (m)
 # Ratio of pressure to yield strength of a fully plastic contact (Tabor 1951).
 FULL_CONSTRAINT = 2.8
 
-# Position (cells) of the apex of smooth adhesive bodies relative to a node, see `Contact.apex`. It
-# is on no symmetry axis of the grid, so nodes do not attach or detach in groups.
+# Position (cells) of the apex of smooth adhesive bodies relative to a node, see `Contact.apex`. The
+# apex is off every symmetry axis of the grid, so that nodes do not attach or detach in groups.
 _OFF_NODE = 0.31, 0.17
 
 
@@ -50,8 +50,8 @@ class Contact:
 
     * `expanding-cavity`: needs a yield strength. The pressure bound grows with deformation, see
       `contact.cavity`.
-    * `equilibrium`: needs a yield pressure. Pressure and surface are in equilibrium under this
-      constant bound.
+    * `equilibrium`: the yield pressure is a constant bound of the pressure. Under this bound, the
+      pressure is in equilibrium with the deformed surface.
     * `truncated`: needs a yield pressure. The elastic pressure is truncated at the yield pressure
       (Thornton and Ning 1998, Powder Technol. 99, 154–162).
 
@@ -77,7 +77,7 @@ class Contact:
             `cohesive` uses the Lennard-Jones law of `theory.LennardJones`, see `contact.cohesive`.
         equilibrium_separation: Gap z₀ (m) at which the traction of `cohesive` is zero. It sets the
             range of the attraction.
-        periodic: Whether the surface repeats without end along x and y, between two flat bodies. A
+        periodic: Whether both bodies are flat and the surface repeats without end along x and y. A
             periodic contact is elastic or has a constant pressure bound (`equilibrium`). The bodies
             attract each other over a finite range (`cohesive`) or not at all.
 
@@ -172,11 +172,11 @@ class Contact:
             return
         if not self.pair.flat:
             raise CaseError(
-                "periodic: needs two flat bodies (radius inf); describe any curvature by the "
-                "heights of the surface"
+                "periodic: a periodic contact needs two flat bodies (radius inf); describe any "
+                "curvature by the heights of the surface"
             )
         if np.ptp(self.surface.height) == 0:
-            raise CaseError("surface: is flat; a periodic contact needs roughness")
+            raise CaseError("surface: all heights are equal; a periodic contact needs roughness")
         if self.adhesive and not self.cohesive:
             raise CaseError(
                 'adhesion: "jkr" is not defined for a periodic contact; use "cohesive", or leave '
@@ -291,7 +291,7 @@ class Contact:
 
         In general the apex is the origin, which is a node. But in an adhesive contact without
         roughness (`smooth`) the apex lies between nodes. If it were a node, whole rings of nodes
-        would attach and detach at once, which doubles the error of restitution.
+        would attach and detach at once, which would double the error of restitution.
         """
         if not self.adhesive or self.surface.provenance.get("source") != "smooth":
             return 0.0, 0.0
@@ -318,9 +318,9 @@ class Contact:
 
     @cached_property
     def mean_offset(self) -> float:
-        """Gap (m) at the apex between the mean surfaces, when the rough bodies first touch.
+        """Gap (m) at the apex, between the mean surfaces of the bodies at first touch.
 
-        Each mean surface has the shape of the smooth body, at the mean height of its roughness.
+        A mean surface has the shape of the smooth body, at the mean height of the roughness.
         """
         at = tuple(n // 2 for n in self.grid.nodes)  # the origin
         r2 = sum(along**2 for along in self.apex)
@@ -335,7 +335,7 @@ class Contact:
 
     @cached_property
     def crest_gap(self) -> NDArray[np.float64]:
-        """Gap at the crest of the asperity of each node (m), see `contact.asperities`."""
+        """Initial gap (m) at the crest of each node's asperity, see `contact.asperities`."""
         return crest_gap_of(self.gap)
 
 

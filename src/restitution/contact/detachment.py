@@ -22,11 +22,12 @@ continuation of their contact:
 
 where u is the elastic displacement and h the gap before this displacement. Index 0 is the edge
 node, + the node outside, and − and −− the nodes inside. The second bracket continues the curvature
-of the surfaces in the contact. The initial gap outside, where the surfaces never touched, does not
-count as opening.
+of the surfaces in the contact. The gap h of the node outside does not appear in the opening, so an
+initial gap between surfaces that never touched does not count.
 
-For rectangular cells σ_c² = 2πE*w hx hy/I. I is the integral of 1/r over all pairs of points of a
-cell, with the distance r of the two points. For square cells of size hx, σ_c² is E*w/(κ hx), with
+The limit σ_c of a rectangular cell with the edges hx and hy is given by σ_c² = 2πE*w hx hy/I. I is
+the integral of 1/r over all pairs of points of a cell, where r is the distance between the two
+points. For square cells of size hx, σ_c² is E*w/(κ hx), with
 κ = (2/3π)[1 − √2 + 3 ln(1 + √2)] = 0.473201.
 """
 
@@ -52,17 +53,18 @@ _AROUND = np.array([(-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0)
 # Steps of averaging G along the edge. Each step adds a variance of ⅔ cell², so the standard
 # deviation of the weights after all steps is about five cells.
 _SMOOTHING_STEPS = 32
-# On a curved edge the computed G is too small. This is its relative error divided by the curvature
-# (1/cell). On discs with radii of 5, 10 and 20 cells, the mean of G is 0.970, 0.984 and 0.992 times
-# its exact value.
+# On a curved edge the computed G is too small. The relative error is this factor times the
+# curvature (1/cell). On discs with radii of 5, 10 and 20 cells, the mean of G is 0.970, 0.984 and
+# 0.992 times its exact value.
 _CURVATURE_BIAS = 0.16
+# Upper limit of the curvature (1/cell) that is used for this correction.
 _LARGEST_CURVATURE = 0.35
 # Smallest and largest distance (cells) that is kept between a node released alone and the next
 # released node.
 _RELEASE_RADIUS, _LARGEST_RADIUS = 3, 40
 # An edge moves by whole nodes, so the energy release rate G scatters along an edge at rest. On
-# coarse grids, the largest G of an edge exceeds the mean by this factor. So only nodes at which G
-# exceeds the work of adhesion by more than this factor are released.
+# coarse grids, the largest G of an edge is this factor times the mean. A node is therefore released
+# only if G exceeds this factor times the work of adhesion.
 _LARGEST_ON_COARSE_GRIDS = 1.04
 # A grid counts as fine if the rim under tension is wider than _RESOLVED_RIM (cells). The mean of G
 # is then accurate. A patch is at rest if the mean of 1 − sqrt(w/G) over its edge is below _AT_REST,
@@ -103,8 +105,8 @@ def released_by_closure(edge: Edge, p: Array, work_of_adhesion: float, limit: fl
     Nodes are released until the energy release rate falls to the work of adhesion. `_recession`
     estimates how far the edge must recede for this at each edge node. All nodes under tension
     within this distance of the smoothed outline are released. If this strip is narrow or contains
-    no node, single nodes under the largest tension are released instead. On coarse grids, nodes
-    whose tension exceeds `limit` (Pa) are also released.
+    no such node, single nodes under the largest tension are released instead. On coarse grids,
+    nodes whose tension exceeds `limit` (Pa) are also released.
     """
     tensile = edge.touching & (p < 0)
     fine = bool(np.count_nonzero(tensile) > _RESOLVED_RIM * edge.G.size)
@@ -139,8 +141,8 @@ def _recession(edge: Edge, tensile: Mask, work_of_adhesion: float, fine: bool) -
 class Edge:
     """The edge nodes of a contact (indices), and the energy release rate G (J/m²) at each of them.
 
-    G is averaged along the edge. `diffusion` holds the neighbours and weights for this average
-    (`_diffusion`).
+    G is averaged along the edge. `diffusion` contains the neighbours and the weights for this
+    average, see `_diffusion`.
     """
 
     touching: Mask
@@ -163,10 +165,10 @@ class Edge:
         outwards = (_FACES @ np.array([row, 1]))[side]
 
         def values_at(values: Array, cells: int) -> Array:
-            """Return `values` at the node that lies `cells` cells outwards of the edge node.
+            """For each face of an edge node, return `values` at the node `cells` cells outwards.
 
-            There is one value for each face. A face is a side of an edge node's cell beyond which
-            there is no contact. Outwards means across this side; negative `cells` mean inwards.
+            A face is a side of the edge node's cell that has no contact beyond it. Outwards means
+            across this side; negative `cells` mean inwards.
             """
             return np.asarray(np.take(values, here + cells * outwards, mode="clip"))
 
@@ -195,13 +197,13 @@ class Edge:
         return self.touching & (self._depth <= width[self._nearest])
 
     def patch_mean(self, values: Array) -> Array:
-        """Mean of `values`, one for each edge node, over the edge nodes of the same patch."""
+        """For each edge node, the mean of `values` over all edge nodes of its patch."""
         patch = _patch_numbers(self.touching, self.nodes)
         means = np.bincount(patch, weights=values) / np.maximum(np.bincount(patch), 1)
         return np.asarray(means[patch])
 
     def _averaged(self, values: ArrayLike) -> Array:
-        """Average `values`, one for each edge node, along the edge."""
+        """Average `values` of the edge nodes along the edge; return one average for each node."""
         sums = np.column_stack([values, np.ones(self.G.size)])
         diffuse(*self.diffusion, _SMOOTHING_STEPS, sums)
         return np.asarray(sums[:, 0] / sums[:, 1])

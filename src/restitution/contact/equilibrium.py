@@ -11,8 +11,8 @@ The gradient g = K p + h − δ is the deformed gap. The gap is open (g ≥ 0) w
 
 Without adhesion the lower bound is zero. The contact then lies inside the set {h < δ}, because
 K p > 0 under every positive pressure. So solving on the bounding box of this set is exact. With
-adhesion the lower bound is a tension on the nodes held in contact. The box then also contains these
-nodes and a margin of two cells.
+adhesion the lower bound at the nodes held in contact is negative (a tension). The box then also
+contains these nodes and a margin of two cells.
 
 In a periodic contact, the mean of K p is zero, so K p < 0 somewhere. Nodes with h ≥ δ may therefore
 come into contact, and the box is the whole grid. The mean of the gradient, mean(h) − δ, is the mean
@@ -68,8 +68,8 @@ class Solution:
     """Result of a solve on a box; the arrays have the shape of the box.
 
     `overlap` is the indentation minus the gap before the solve (m), `gap` the deformed gap (m) and
-    `pressure` the pressure (Pa). `residual` is the accuracy of the solve, and `convolutions` the
-    number of convolutions that it took.
+    `pressure` the pressure (Pa). `residual` is the residual that the solve reached (dimensionless),
+    and `convolutions` the number of convolutions that it took.
     """
 
     overlap: Array
@@ -104,7 +104,7 @@ def solve_pressure(
     if contact.periodic and limit == math.inf and b.mean() >= 0:
         raise DomainError(
             f"indentation: the contact is complete at {1e9 * (indentation - b.mean()):.6g} nm and "
-            "more; use a smaller indentation, or prescribe the pressure"
+            "at larger indentations; use a smaller indentation, or prescribe the pressure"
         )
     scale = _scale_of(contact, indentation, b)
     operators = operators_of(contact)
@@ -153,9 +153,10 @@ def solve_pressure(
 
 
 def require_converged(found: Minimum, solve: str, residual: float, reached: float) -> None:
-    """Raise `NotConvergedError` if a solve has not `reached` the tolerance `residual`.
+    """Raise `NotConvergedError` if the solve that returned `found` did not converge.
 
-    `solve` names the solve in the message.
+    For the message, `solve` names this solve, `residual` is its tolerance, and `reached` is its
+    last residual.
     """
     if not found.converged:
         raise NotConvergedError(
@@ -168,12 +169,12 @@ def require_converged(found: Minimum, solve: str, residual: float, reached: floa
 def elastic_pressure(
     contact: Contact, indentation: float, residual: float
 ) -> tuple[Array, Box, int]:
-    """Estimate the pressure (Pa) between elastic bodies without adhesion, with a large `residual`.
+    """Estimate the pressure (Pa) between elastic bodies without adhesion.
 
     `residual` bounds the root mean square of the violation of the contact conditions, relative to
-    the overlap. The pressure is given on a box and is zero outside. Contact patches of a few nodes
-    that lie apart from the others can be missing, because `solve_near_guess` does not check all
-    nodes. Returns the pressure, the box and the number of convolutions. Raises `NotConvergedError`.
+    the largest overlap. The pressure is given on a box and is zero outside. Isolated contact
+    patches of a few nodes can be missing, because `solve_near_guess` does not check all nodes.
+    Returns the pressure, the box and the number of convolutions. Raises `NotConvergedError`.
     """
     box = candidate_box(contact, indentation)
     if box is None:
@@ -216,7 +217,7 @@ def _scale_of(contact: Contact, indentation: float, b: Array) -> float:
 def operators_of(contact: Contact, make: Callable[..., Convolution] | None = None) -> Operators:
     """Return a function that makes the operator and its approximate inverse for a grid level.
 
-    `make` makes the operator, by default the one of the free or periodic half-space.
+    `make` makes the operator. By default, this is the operator of the free or periodic half-space.
     """
     E_star, (hx, hy) = contact.pair.contact_modulus, contact.grid.spacing
     make = make or (periodic_half_space if contact.periodic else half_space)
@@ -274,7 +275,7 @@ def build_state(
 def candidate_box(contact: Contact, indentation: float, history: State | None = None) -> Box | None:
     """Return the bounding box of the nodes with a gap below `indentation`; None without such nodes.
 
-    The box contains every contact without adhesion. For a periodic contact, it is the whole grid.
+    Without adhesion, the box contains all contact. For a periodic contact, it is the whole grid.
     """
     whole = region = whole_grid(contact)
     gap = contact.gap

@@ -1,8 +1,8 @@
 """Elastic half-space: displacement due to uniform pressure or shear traction on a rectangle.
 
 Pressure and displacement are positive into the body. Both bodies are combined into one half-space
-of contact modulus E*: 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂. Shear traction and displacement point
-along x. The two compliances of `Pair.shear_compliances` combine the bodies.
+of contact modulus E*: 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂. In shear, traction and displacement are
+along x, and the two compliances of `Pair.shear_compliances` combine the bodies.
 
 On a periodic half-space, a pressure wave with the angular wave number q causes a displacement wave
 with 2/(E* |q|) times its amplitude (Johnson 1985, *Contact Mechanics*, §13.2).
@@ -161,7 +161,7 @@ def half_space(
     device = current()
 
     def kernel(i: NDArray[np.int64], j: NDArray[np.int64]) -> Array:
-        # FreeConvolution passes i as a row and j as a column.
+        # FreeConvolution passes i as a row and j as a column, so they are exchanged here.
         return influence_coefficients(j, i, spacing[::-1], contact_modulus, device)
 
     return FreeConvolution(kernel, shape, device)
@@ -227,7 +227,7 @@ def sprung_half_space(
 
     The displacement is that of `periodic_half_space` plus `foundation_compliance` times the mean
     pressure. In contrast to `periodic_half_space`, this operator is positive definite.
-    `inverse_half_space` is its inverse if the FFT of this shape needs no padding.
+    `inverse_half_space` is its exact inverse if the FFT of this shape needs no padding.
     """
     compliance = foundation_compliance(shape, spacing, contact_modulus)
     return _with_mean(compliance, shape, spacing, contact_modulus)

@@ -37,10 +37,10 @@ from restitution.numerics.read_only import freeze
 
 # Retraction after each loading increment (m) (Ghanbarzadeh et al. 2019, §2.2).
 PULL_INCREMENT = 1e-10
-# Quadrature of the force of a truncated contact: tolerance as a fraction of force times
-# indentation, margin that is added to the error (in multiples of the tolerance), and number of
-# initial intervals. The integrand can be zero up to first yield, so with one interval it could be
-# zero at all sampled depths.
+# Quadrature of the force of a truncated contact. The tolerance is a fraction of force times
+# indentation. The margin is a multiple of the tolerance and is added to the error. The third value
+# is the initial number of intervals. The integrand can be zero up to first yield. With only one
+# interval it could therefore be zero at all sampled depths.
 _TRUNCATION_TOLERANCE, _TRUNCATION_MARGIN, _TRUNCATION_PANELS = 3e-5, 10.0, 4
 # Relative tolerance of the integral of an adhesive force. The force jumps as asperities attach,
 # which limits the accuracy. A relative error of 1.5e-3 of the loading work changes the restitution
@@ -302,9 +302,9 @@ def _intermediate(contact: Contact, depth: float, start: State | None = None) ->
 
 
 def _with_increments(state: State, start: State | None) -> State:
-    """Add the plastic work under a growing bound and its error.
+    """Add the plastic work under a growing bound, and the error of this work.
 
-    The work is summed over increasing depths, beginning at `start` or, if None, at `_SHALLOW` times
+    The work is a sum over increasing depths, beginning at `start` or, if None, at `_SHALLOW` times
     the indentation, where little has yielded.
     """
     contact, indentation = state.contact, state.indentation

@@ -39,7 +39,8 @@ _CONSTANT = {
 # For `expanding-cavity`: values of the steepness ψ of the asperities, and the largest relative
 # difference of COR from finite elements at each of these values.
 _STEEPNESS, _GROWING = (0.0, 4.0, 6.0), (0.03, 0.035, 0.045)
-# Values of the COR due to plasticity alone, and the factors by which this difference is multiplied.
+# Values of the COR due to plasticity alone, and a factor for each of them. The largest difference
+# (`_GROWING`) is multiplied by this factor.
 _NEAR_ONE = (0.94, 0.98, 1.0), (1.0, 0.5, 0.2)
 # Values of the Tabor parameter, and the energy that smooth elastic spheres dissipate in a cycle of
 # contact, as a fraction of the energy dissipated in JKR theory. The fractions come from an

@@ -42,8 +42,8 @@ def loading_path(
         State at each given value, in the given order.
 
     Raises:
-        CaseError: Not exactly one of the three is given, a value is not positive, or velocities are
-            given for bodies without density.
+        CaseError: Not exactly one of the three sequences is given, a value is not positive, or
+            velocities are given for bodies without density.
         NotConvergedError: A tolerance was not reached.
         DomainError: The contact reaches the edge of the grid.
     """
@@ -78,14 +78,14 @@ def unloading_path(
 
     Args:
         state: State to unload.
-        steps: Number of steps without adhesion.
+        steps: Number of steps of a contact without adhesion.
         tolerance: Error of the coefficient of restitution (dimensionless) that the steps may cause.
             It determines the number of steps with adhesion, see `contact.separation`.
         residual: Tolerance on the violation of the contact conditions (dimensionless), as in
             `solve`; used only without adhesion.
         known: States of another unloading of the same contact, which began at a smaller
             indentation. They save time with adhesion: an elastic contact that unloads from a larger
-            indentation passes through the same states, so these are yielded without a new solve.
+            indentation passes through the same states, so they are reused without a new solve.
 
     Yields:
         `state`, then the state after each step.

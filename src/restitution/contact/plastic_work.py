@@ -20,9 +20,10 @@ _RULE_ERROR, _NEW, _NEW_ERROR = 0.1, 0.8, 0.25
 def plastic_work(before: State | None, after: State) -> tuple[float, float]:
     """Plastic work (J) between two states of loading, and its error (J).
 
-    `after` may be at most 1.42 times as deep as `before`. Between the indentations δ₁ and δ₂, each
-    node yields by the displacement Δu while its pressure bound grows from b₁ to b₂. If the plastic
-    displacement is linear in δ and the bound is linear in ln δ, the work per area is
+    If `before` is None, loading begins from the undeformed bodies. Otherwise, `after` may be up to
+    1.42 times as deep as `before`. Between the indentations δ₁ and δ₂, each node yields by the
+    displacement Δu while its pressure bound grows from b₁ to b₂. If the plastic displacement is
+    linear in δ and the bound is linear in ln δ, the work per area is
     Δu [b₁ + (b₂ − b₁) (δ₂/(δ₂ − δ₁) − 1/ln(δ₂/δ₁))]. A node that begins to yield in this step
     yields under bounds nearer to b₂, so the factor of b₂ − b₁ is then `_NEW`. The error is the
     fraction `_RULE_ERROR` or `_NEW_ERROR` of the product Δu (b₂ − b₁).

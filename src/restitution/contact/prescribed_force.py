@@ -21,21 +21,22 @@ _SOLVE_RESIDUAL = 1e-10  # keeps the error of a solve well below the force toler
 def solve_at_force(contact: Contact, force: float, *, start: State | None = None) -> State:
     """Load the undeformed bodies to `force`, within a relative error of 1e-8.
 
-    The force increases with the indentation, so a bracketing root finder always converges. With
-    adhesion, each solve of the root finder starts from the previous solve. A periodic contact is
-    solved by `solve_at_pressure`, under the force divided by the area of the grid.
+    The force increases with the indentation. A bracketing root finder therefore succeeds unless the
+    force jumps past `force`. With adhesion, each solve of the root finder starts from the previous
+    solve. A periodic contact is solved by `solve_at_pressure`, under the force divided by the area
+    of the grid.
 
     Args:
         contact: Contact to load.
         force: Normal force (N), positive.
-        start: State of the same contact at a lower force, as for `solve`.
+        start: State of the same contact under a smaller force, used as in `solve`.
 
     Returns:
         State under `force`.
 
     Raises:
         CaseError: The force is not positive.
-        DomainError: The whole grid cannot carry the force at the yield pressure, or the contact
+        DomainError: The force exceeds that of the whole grid at the yield pressure, or the contact
             reaches the edge of the grid.
         NotConvergedError: The force jumps from below to above `force`, or a solve did not converge.
     """

@@ -30,11 +30,11 @@ def solve_at_pressure(contact: Contact, pressure: float, *, residual: float = RE
     For the solve, the bodies are put on an elastic foundation, whose compression is proportional to
     the mean pressure. The foundation makes the problem positive definite even in complete contact,
     where the indentation of the bodies alone no longer depends on the pressure. The compression of
-    the foundation is subtracted from the result.
+    the foundation is finally subtracted from the indentation.
 
     Args:
         contact: Periodic contact to load.
-        pressure: Nominal pressure: normal force per area of the grid (Pa), positive.
+        pressure: Nominal pressure (Pa), positive: the normal force divided by the area of the grid.
         residual: Tolerance on the violation of the contact conditions (dimensionless), relative to
             the indentation.
 

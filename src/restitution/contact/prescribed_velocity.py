@@ -1,4 +1,4 @@
-"""Contact at the deepest point of an impact, where the loading work is the kinetic energy."""
+"""Contact at the deepest point of an impact, where the loading work equals the kinetic energy."""
 
 from __future__ import annotations
 
@@ -18,22 +18,23 @@ VELOCITY_TOLERANCE = 1e-6
 # Relative tolerance on the velocity if the loading work is integrated. The relative error of the
 # integral is about 1e-3, so a smaller tolerance would be useless.
 _INTEGRATED_TOLERANCE = 1e-4
-_MAX_GROWTH = 3.0  # largest factor between two trial depths
+_MAX_GROWTH = 3.0  # largest factor between two successive trial depths
 _MOST_STEPS = 8  # largest number of Newton steps
 
 
 def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None = None) -> State:
     """Load the undeformed bodies until the loading work is ½ m* V².
 
-    If the work is known exactly, the relative error of the velocity is at most 1e-6. If the work is
-    integrated numerically, the velocity computed from `State.loading_work` agrees with V within
-    1e-4. In addition, the work then has the error `State.work_error`. Where the work is positive,
-    it increases with the indentation, so the search always converges.
+    m* is the reduced mass. If the work is known exactly, the relative error of the velocity is at
+    most 1e-6. If the work is integrated numerically, the velocity computed from
+    `State.loading_work` agrees with V within 1e-4. In addition, the work then has the error
+    `State.work_error`. Where the work is positive, it increases with the indentation. The search
+    therefore succeeds unless the work jumps past ½ m* V².
 
     Args:
         contact: Contact to load.
         velocity: Impact velocity V (m/s), positive.
-        start: State of the same contact at a lower velocity, as for `solve`.
+        start: State of the same contact at a smaller velocity, used as in `solve`.
 
     Returns:
         State at the deepest point of the impact.
@@ -80,7 +81,7 @@ class _Search:
         self.found: dict[float, State] = {}
 
     def depth(self, tolerance: float) -> float:
-        """Find the depth (m), within the relative `tolerance` of the velocity."""
+        """Find the depth (m) at which the velocity is reached within the relative `tolerance`."""
         depth: float | None = self.first_depth()
         for _ in range(_MOST_STEPS):
             if depth is None or self.miss(self.at(depth)) <= tolerance:
@@ -130,7 +131,7 @@ class _Search:
         return depth
 
     def newton(self, depth: float) -> float | None:
-        """Return the depth (m) after a Newton step from `depth`; None if outside the bracket.
+        """Return the depth (m) after a Newton step from `depth`; None if it is outside the bracket.
 
         The bracket extends from the deepest depth tried so far with too little work to the
         shallowest one with too much work.

@@ -32,15 +32,15 @@ RESTITUTION_ERROR = 0.002
 _ACCURACY = 1e-3  # tolerance of the solves as a fraction of the crack opening at the edge
 _STEPS_OF_RECOVERY = 8  # smallest number of steps into which the elastic recovery is divided
 
-# Smallest number of steps into which the pull-off displacement of a punch of the same area is
-# divided.
+# Smallest number of steps into which the pull-off displacement of a flat punch with the same area
+# is divided.
 _STEPS_OF_TENSION = {"crack-closure": 32, "pohrt-popov": 16}
 _FINEST = 400  # the shortest step is the pull-off displacement of this punch divided by _FINEST
 _REFINEMENTS = (1, 2, 4)  # factors on the number of steps, tried until the tolerance is met
 
 # If the error due to the steps is below this fraction of the surface energy (work of adhesion times
-# contact area), the error due to the grid is larger (see `collision`). Finer steps are then
-# useless.
+# contact area), the error due to the grid is larger (see the module `collision`). Finer steps are
+# then useless.
 _SMALL = {"crack-closure": 0.005, "pohrt-popov": 0.0}
 _MOST_STEPS = 3000  # steps after which unloading counts as not converged
 
@@ -61,7 +61,10 @@ _GRID_LOSS = 0.05
 
 @dataclass(frozen=True)
 class Separation:
-    """Result of unloading to separation: energies in J, the force in N, the indentation in m."""
+    """Result of unloading to separation: energies (J), force (N) and indentation (m).
+
+    `error` is the error of `unloading_work`.
+    """
 
     unloading_work: float
     error: float
@@ -83,7 +86,7 @@ def separate(
     If `state` is already without contact, it is the only state. `tolerance` is the error of the
     coefficient of restitution that the steps may cause. If the estimated error is larger, unloading
     is repeated with 2 and finally 4 times as many steps. `known` may be the states of another
-    unloading of the same contact, which began at a smaller indentation. If nothing has yielded, the
+    unloading of the same contact, which began at a smaller indentation. If no node has yielded, the
     remaining states are taken from `known` as soon as the force agrees with that of `known`. Raises
     `NotConvergedError` if the bodies do not separate.
     """
@@ -256,9 +259,9 @@ def _late_force(state: State) -> float:
 def _plan(state: State, tolerance: float) -> tuple[float, float]:
     """Estimate the elastic recovery (m) and the largest allowed `_late_force` (N)."""
     stored, adhesion = state.stored_energy, state.contact.work_of_adhesion * state.contact_area
-    # The elastic recovery is estimated in two ways, and the smaller value is used: from the stored
-    # energy as that of a punch of the same area, and from the stored energy and the force as that
-    # of a Hertz-like contact.
+    # The elastic recovery is estimated in two ways, and the smaller value is used. The first
+    # estimate belongs to a flat punch with the same area and stored energy. The second one belongs
+    # to a Hertz-like contact with the same force and stored energy.
     a = math.sqrt(state.contact_area / math.pi)
     recovery = 1.5 * math.sqrt(stored / (state.contact.pair.contact_modulus * a))
     if state.force > 0:
@@ -277,7 +280,7 @@ def _plan(state: State, tolerance: float) -> tuple[float, float]:
 
 
 def _predict(previous: State | None, state: State, step: float) -> NDArray[np.float64] | None:
-    """Extrapolate the pressure on the nodes in contact linearly over a `step` of unloading (m).
+    """Extrapolate the pressure at the nodes in contact linearly, by a `step` (m) of unloading.
 
     The result is a first guess. It improves the accuracy rather than the speed: the tolerance of a
     solve is large, so a better first guess gives a result nearer to the solution.

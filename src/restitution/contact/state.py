@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 class State:
     """A contact in equilibrium at one indentation.
 
-    Arrays that other code could still write to are copied. States are compared and hashed by
+    Arrays that other code could still modify are copied. States are compared and hashed by
     identity; to compare values, compare the fields.
 
     Attributes:
@@ -36,8 +36,8 @@ class State:
         box_displacement: Elastic displacement (m) on `box`.
         plastic_displacement: Depth (m) by which yielding has lowered the surface, shape
             `grid.nodes`.
-        bound: Largest possible pressure (Pa) of each node in later steps: one number, or an array
-            of shape `grid.nodes`.
+        bound: Pressure (Pa) at which each node yields: one number, or an array of shape
+            `grid.nodes`.
         plastic_work: Work dissipated by yielding so far (J).
         adhesive_work: Work done by adhesion so far (J).
         work_error: Error of plastic work and adhesive work together (J).
@@ -45,11 +45,11 @@ class State:
             largest overlap of the undeformed surfaces or, with adhesion, to
             `Contact.residual_length`.
         convolutions: Number of convolutions computed in the solve.
-        force_before_release: Force before nodes were released in this step of adhesive unloading
-            (N); None after loading.
+        force_before_release: Force (N) just before nodes were released in this step of adhesive
+            unloading; None after loading.
         balance: Indentation (m) and force (N) at which the energy release rate, averaged along the
-            edge of the previous contact area, equals the work of adhesion. None after loading, if
-            this step released no nodes, if no balance exists, and always with `pohrt-popov`.
+            edge of the previous contact area, equals the work of adhesion. None for a loaded state,
+            for a step that released no nodes or found no such point, and with `pohrt-popov`.
         is_first_loading: Whether the state was computed by loading the undeformed bodies, not by a
             step from another state (bool).
     """
@@ -94,7 +94,7 @@ class State:
 
     @property
     def force(self) -> float:
-        """Normal force (N), the sum of the pressure over all nodes, times the cell area."""
+        """Normal force (N), the sum of the pressure over all nodes times the cell area."""
         return float(self.box_pressure.sum()) * self.contact.grid.cell_area
 
     @property
@@ -109,7 +109,7 @@ class State:
 
     @property
     def contact_area(self) -> float:
-        """Real contact area (m²), number of nodes in contact times cell area."""
+        """Real contact area (m²), the number of nodes in contact times the cell area."""
         return self.contact_nodes * self.contact.grid.cell_area
 
     @property
@@ -124,25 +124,28 @@ class State:
 
     @property
     def mean_gap(self) -> float:
-        """Mean of the deformed gap (m), the distance of the mean planes of the two surfaces.
+        """Mean of the deformed gap (m), the distance between the mean planes of the surfaces.
 
         Raises:
             CaseError: The contact is not periodic.
         """
         if not self.contact.periodic:
-            raise CaseError("mean_gap: is defined only for a periodic contact")
+            raise CaseError("mean_gap: only a periodic contact has a mean gap")
         gap = self.contact.gap.mean() + self.plastic_displacement.mean() - self.indentation
         return float(gap)
 
     @property
     def stored_energy(self) -> float:
-        """Elastic energy ½ Σ p u hx hy (J), with the pressure p and the elastic displacement u."""
+        """Elastic energy ½ Σ p u hx hy (J).
+
+        p is the pressure, u the elastic displacement and hx hy the cell area.
+        """
         twice = float(np.einsum("ij,ij->", self.box_pressure, self.box_displacement))
         return 0.5 * twice * self.contact.grid.cell_area
 
     @property
     def plastic_volume(self) -> float:
-        """Plastic volume (m³), the plastic displacement summed over the nodes, times cell area."""
+        """Plastic volume (m³), the sum of the plastic displacement times the cell area."""
         return float(self.plastic_displacement.sum()) * self.contact.grid.cell_area
 
     @property
@@ -191,7 +194,7 @@ class State:
 
 
 def _joined(labels: NDArray[np.int32], count: int) -> NDArray[np.int32]:
-    """Return, for each label, the number of its patch if patches continue across grid edges."""
+    """Return the patch number of each label, where patches continue across the grid edges."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 

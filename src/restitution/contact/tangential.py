@@ -73,7 +73,7 @@ class TangentialState:
 
     @property
     def force(self) -> float:
-        """Tangential force (N), the sum of the traction over all nodes, times the cell area."""
+        """Tangential force (N), the sum of the traction over all nodes times the cell area."""
         return float(self.box_traction.sum()) * self.normal.contact.grid.cell_area
 
     @property
@@ -89,7 +89,7 @@ class TangentialState:
 
     @property
     def sticking(self) -> NDArray[np.bool_]:
-        """Whether a node sticks (bool), on `box`: the traction is below Coulomb's limit."""
+        """Whether each node of `box` sticks (bool), with a traction below Coulomb's limit."""
         return np.abs(self.box_traction) < _limit(self.normal, self.friction, self.box)
 
     def _summary(self) -> list[str]:
@@ -113,7 +113,7 @@ def shear(
     history: TangentialState | None = None,
     residual: float = RESIDUAL,
 ) -> TangentialState:
-    """Move the bodies of a contact tangentially, along x, to a displacement.
+    """Move the bodies of a contact along x, to a prescribed tangential displacement.
 
     The energy lost to friction is the slip in this step times the mean of the tractions before and
     after the step, summed over the nodes. The work of the step is the change of the displacement
@@ -170,7 +170,7 @@ def shear(
     upper = device.put(limit)
     found = minimise_quadratic(
         BoundedQuadratic(K, device.put(target), -upper, upper, K.single_precision),
-        start=device.put(before.copy()),  # overwritten
+        start=device.put(before.copy()),  # the solver overwrites its start
         precondition=inverse_half_space(
             shape, contact.grid.spacing, contact.pair.tangential_modulus
         ),

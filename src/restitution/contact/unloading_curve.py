@@ -1,4 +1,4 @@
-"""Curves of adhesive unloading (force over indentation), and a test whether two curves coincide.
+"""Curves of adhesive unloading (force against indentation), and a test for equal curves.
 
 The points of most curves are *balances* of contact areas. The balance of a contact area is the
 indentation and the force at which the energy release rate along its edge equals the work of
@@ -23,22 +23,23 @@ _SMOOTHED = 11  # number of points in each parabola that smooths the force
 # A change of the force between two points is a jump if it exceeds this fraction of the largest
 # tension.
 _JUMP = 0.1
-# The indentation decreases by at least this fraction between the last balance and separation,
-# relative to its decrease between the beginning of unloading and the last balance.
+# Between the last balance and separation, the indentation decreases by at least this fraction of
+# its decrease from the beginning of unloading to the last balance.
 _END = 1e-3
-# Two forces at one indentation count as equal if their difference is below this fraction of the
-# largest tension. The balances scatter by about as much.
+# Two forces at one indentation count as equal if their difference is at most this fraction of the
+# largest tension or of the force, whichever is larger. Balances scatter by about this fraction.
 _SAME = 0.03
 
 
 @dataclass(frozen=True)
 class UnloadingCurve:
-    """Force (N) over decreasing indentation (m), shape (points,).
+    """Force (N) against decreasing indentation (m), shape (points,).
 
-    If `balanced`, the first point is the state at which unloading begins, and the others are the
-    balances of the contact areas, which do not contain the jumps of the force when nodes are
-    released. If not `balanced`, for example with `pohrt-popov`, the points are all states. `fixed`
-    means that the contact area is fixed between the first two points, so the force is linear there.
+    If `balanced`, the first point is the state at which unloading begins, and the other points are
+    the balances of the contact areas. Balances are free of the jumps of the force that the release
+    of nodes causes. If not `balanced`, for example with `pohrt-popov`, the points are all states.
+    `fixed` means that the contact area is fixed between the first two points, so that the force is
+    linear between them.
     """
 
     indentation: Array
@@ -156,7 +157,7 @@ class SharedUnloading:
 
     @classmethod
     def of(cls, state: State, known: Sequence[State]) -> SharedUnloading | None:
-        """Return the unloading `known` if unloading from `state` can join it, otherwise None."""
+        """Return the `known` states if unloading from `state` can join them, otherwise None."""
         if (
             not known
             or known[0].contact is not state.contact

@@ -55,14 +55,16 @@ def require_inside_grid(state: State) -> None:
 
 
 def edge_values(contact: Contact, indentation: float) -> dict[str, Any]:
-    """Return the values of a finding about the edge of the grid (lengths in m).
+    """Return the values of a finding about the edge of the grid. Lengths are in m.
+
+    The values are:
 
     * `indentation`;
     * `size`, the edge lengths of the grid;
     * `needed`, the edge lengths of a grid that is large enough;
     * `first_touch`, the coordinates of first touch;
     * `off_centre`, whether first touch is far from the centre;
-    * `levelling` and `scan`, the levelling and the size of a measured surface, otherwise None.
+    * `levelling` and `scan`, the levelling and the size of a measured surface; None for others.
     """
     provenance, size = contact.surface.provenance, contact.grid.size
     touch = first_touch(contact)
@@ -94,9 +96,10 @@ def first_touch(contact: Contact) -> tuple[float, float]:
 def needed_edges(contact: Contact, indentation: float) -> tuple[float, float]:
     """Edge lengths (m) of a grid that contains the contact; at least those of the present grid.
 
-    Contact is possible only where the initial gap h₀ is below the indentation δ. With heights
-    z ≤ z_max and h₀ = r²/(2R*) − z − c, where the constant c makes min h₀ = 0, contact is possible
-    only for r² < 2R*(δ + z_max + c). For smooth bodies this is r < sqrt(2R*δ).
+    Contact is possible only where the initial gap h₀ is smaller than the indentation δ. At the
+    distance r from the centre, h₀ = r²/(2R*) − z − c with the height z ≤ z_max. The constant c
+    makes min h₀ = 0. Contact is therefore possible only for r² < 2R*(δ + z_max + c). For smooth
+    bodies this is r < sqrt(2R*δ).
     """
     R, x, y = contact.pair.radius, contact.grid.x[:, None], contact.grid.y[None, :]
     height = contact.surface.height

@@ -21,8 +21,10 @@ from restitution.theory import Hertz, Kendall
 # Limits beyond which an input is doubtful.
 _TILTED = 0.5  # fraction of the variance of the heights that a plane explains
 _OBLONG = 0.01  # relative difference of the edges of a pixel
-_STEEP = 0.5  # rms slope, beyond which small-slope theory is inaccurate
-_PRESSURES = (1e-5, 0.3)  # range of p_y/E*: from very soft metals to the ideal strength of solids
+_STEEP = 0.5  # rms slope beyond which small-slope theory is inaccurate
+# Range of the ratio of the pressure of a fully plastic contact to E*: from very soft metals to the
+# ideal strength of solids.
+_PRESSURES = (1e-5, 0.3)
 _NEAR_EDGE = 0.1  # distance of first touch from the edge, as a fraction of the width of the grid
 
 # The displacement outside the contact is computed for smooth bodies and multiplied by this factor.
@@ -37,12 +39,12 @@ def impossible(contact: Contact, indentation: float) -> Finding | None:
 
     * `roughness-above-radius`: `radius` of the smaller particle, and height `peak` of the highest
       point above the mean (m);
-    * `contact-beyond-radius`: predicted `radius`, `indentation`, `reduced_radius` (m);
+    * `contact-beyond-radius`: predicted contact `radius`, `indentation`, `reduced_radius` (m);
     * `pixel-above-contact`: see `coarse_scan`;
     * `range-unresolved`: `spacing` and `needed` spacing (m) of a cohesive contact, and whether
       the contact is `periodic`.
 
-    A periodic contact has no radius, so only `range-unresolved` applies to it.
+    Flat bodies have no radius, so only `range-unresolved` applies to a periodic contact.
     """
     if contact.periodic:
         return _coarse_range(contact)
@@ -72,7 +74,7 @@ def doubtful(contact: Contact, indentation: float) -> list[Finding]:
     * `unusual-yield-pressure`: `ratio` of the pressure of a fully plastic contact to E*, and the
       usual range of this ratio, `low` to `high`;
     * `oblong-pixels`: `file`, and edges `x` and `y` of a pixel (m);
-    * `coarser-than-scan`: `spacing` of the grid and edge `pixel` of a pixel (m) along `axis`;
+    * `coarser-than-scan`: grid `spacing` and pixel edge `pixel` (m) along an `axis`, x or y;
     * `surface-notice`: `notice` from the provenance of a surface that differs from its scan.
 
     For a periodic contact, the findings that depend on the radius of the bodies are left out.
@@ -136,14 +138,14 @@ def _closed_gap(contact: Contact, indentation: float, distance: float) -> float:
     """The largest undeformed gap (m) that is predicted to close at `distance` from the centre.
 
     The result is the indentation minus the displacement F/(πE*r) at the distance r from the centre
-    of a smooth contact under the force F. With adhesion, the pull-off displacement of a punch as
-    wide as the contact (JKR) is added to the indentation. The displacement F/(πE*r) is reduced if
-    the roughness is not small compared with the indentation, because a few asperities then carry
-    the load.
+    of a smooth contact under the force F. With adhesion, the pull-off displacement of a flat punch
+    as wide as the contact is added to the indentation. The displacement F/(πE*r) is reduced if the
+    roughness is not small compared with the indentation. Only a few asperities are then in contact,
+    and the force is smaller.
     """
     pair, p_y, w = contact.pair, contact.hardness, contact.work_of_adhesion
     E_star, deeper = pair.contact_modulus, indentation
-    # Fixed-point iteration. It converges because `deeper` grows only with the root of the radius.
+    # The fixed-point iteration converges, because `deeper` grows only with the root of the radius.
     for _ in range(10):
         radius = predicted_radius(pair, deeper, p_y)
         if not contact.adhesive:

@@ -21,10 +21,11 @@ from restitution.numerics.box import widen
 from restitution.theory import JKR, FirstYield, Hertz
 
 # With eight or more nodes per contact radius, results for smooth spheres are within 0.3 % of
-# tabulated values. For rough surfaces, if half of the contact lies in patches of at least 20 nodes,
-# the rms deviation of restitution from the value on the finest grid is 2 %, and the largest
-# deviation 5 % (docs/resolution.md).
+# tabulated values (docs/resolution.md).
 NODES_PER_RADIUS = 8
+# If half of the contact of rough bodies is in patches of at least 20 nodes, restitution has an rms
+# deviation of 2 % from the value on the finest grid, and deviates by at most 5 %
+# (docs/resolution.md).
 NODES_PER_PATCH = 20
 # With four or more nodes per pull-off radius and `crack-closure`, the pull-off force of smooth
 # spheres is within 2.3 % of JKR at all positions of the apex that were compared (docs/adhesion.md).
@@ -39,7 +40,11 @@ _HALF_SPACE = 0.2  # ratio of contact radius to R* above which the half-space ap
 
 
 def predicted_radius(pair: Pair, indentation: float, yield_pressure: float = math.inf) -> float:
-    """Contact radius (m) of smooth bodies: sqrt(R*δ) if elastic, sqrt(2R*δ) if fully plastic."""
+    """Contact radius (m) of smooth bodies: sqrt(R*δ) if elastic, sqrt(2R*δ) if fully plastic.
+
+    δ is the `indentation` (m), R* the reduced radius (m), and `yield_pressure` (Pa) the pressure of
+    a fully plastic contact.
+    """
     R = pair.radius
     yielded = math.inf
     if math.isfinite(yield_pressure):
@@ -52,9 +57,9 @@ def predicted_radius(pair: Pair, indentation: float, yield_pressure: float = mat
 def adhesive_nodes(state: State) -> float:
     """Number of nodes per pull-off radius of an asperity; inf without adhesion.
 
-    It is a_c/h. a_c is the contact radius at pull-off (`pull_off_radius`) of a sphere of radius
-    `radius_of_asperities`, and h the larger spacing of the grid. For a cohesive contact, the result
-    is inf if the grid resolves the range of the attraction, and 0 otherwise.
+    The number is a_c/h. Here a_c is the contact radius at pull-off (`pull_off_radius`) of a sphere
+    of radius `radius_of_asperities`, and h is the larger spacing of the grid. For a cohesive
+    contact, the result is inf if the grid resolves the range of the attraction, and 0 otherwise.
     """
     contact = state.contact
     if not contact.adhesive:
@@ -116,8 +121,8 @@ def expected_pull_off_error(contact: Contact) -> float:
 def coarse_scan(contact: Contact, indentation: float) -> Finding | None:
     """Return the finding `pixel-above-contact` if a pixel of a scan exceeds the contact radius.
 
-    The values of the finding are `file`; `pixel`, the larger one of pixel and grid spacing (m); and
-    the contact `radius` (m) at the `indentation` (m).
+    The values of the finding are the `file`; `pixel`, which is the larger one of pixel and grid
+    spacing (m); the `indentation` (m); and the contact `radius` (m) at this indentation.
     """
     provenance = contact.surface.provenance
     if "file" not in provenance:
@@ -195,8 +200,9 @@ def resolves(median_patch_nodes: float) -> bool:
 def unresolved_patches(depths: Sequence[float], median_patches: Sequence[float]) -> list[Finding]:
     """Return the finding `patches-unresolved` if patches have too few nodes at some `depths` (m).
 
-    The values of the finding are `few`, the number of these depths; `depths`, the number of all
-    depths; and `deepest`, the deepest of these depths (m).
+    `median_patches` are the results of `median_patch` at the depths. The values of the finding are
+    `few`, the number of depths with too few nodes; `depths`, the number of all depths; and
+    `deepest`, the deepest depth (m) with too few nodes.
     """
     few = [depth for depth, n in zip(depths, median_patches, strict=True) if not resolves(n)]
     if not few:
@@ -231,5 +237,5 @@ def grid_of_a_scan(contact: Contact) -> bool:
 
 
 def _coarsest_pixel(contact: Contact) -> float:
-    """The coarsest pixel (m) in the provenance of the surface; 0 for a surface without pixels."""
+    """The longest edge of a pixel (m) of the scan; 0 for a surface without pixels."""
     return max(float(contact.surface.provenance.get(f"pixel_{a}_m", 0.0)) for a in "xy")
