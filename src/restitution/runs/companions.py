@@ -33,6 +33,8 @@ Array = NDArray[np.float64]
 SURFACES = 7  # number of additional surfaces from which the scatter is estimated
 _TOLERANCE = 0.005  # allowed error of COR due to the steps of adhesive unloading
 
+_LOSSLESS = 1e-6  # largest loss of an elastic impact relative to its loading work (rounding)
+
 # Two depths are added: the smallest depth times the first factor, and the largest depth times the
 # second factor. They are needed because other surfaces reach the same work at other depths.
 _SHALLOWER, _DEEPER = 0.5, 1.3
@@ -40,23 +42,33 @@ _SHALLOWER, _DEEPER = 0.5, 1.3
 
 @dataclass(frozen=True)
 class Curve:
-    """COR as a function of the loading work (J), at increasing values of the work."""
+    """Loading and unloading work (J) of impacts, at increasing values of the loading work."""
 
     work: Array
-    restitution: Array
+    unloading_work: Array
+
+    @property
+    def restitution(self) -> Array:
+        """COR of the impacts: sqrt(unloading work/loading work), 0 if the bodies stick."""
+        return np.sqrt(np.clip(self.unloading_work / self.work, 0.0, 1.0))
 
     def at(self, work: Array) -> Array:
         """Interpolate COR at `work` (J): monotone cubic in ln(work), constant beyond the ends.
 
+        If every impact loses energy, the logarithm of the loss is interpolated. Then COR is right
+        also between bodies that stick and bodies that separate, where COR rises steeply from zero.
         All values are NaN if the curve is empty.
         """
         from scipy.interpolate import PchipInterpolator
 
         if self.work.size < 2:
             return np.full(np.shape(work), self.restitution[0] if self.work.size else math.nan)
-        inside = np.clip(work, self.work[0], self.work[-1])
-        between = PchipInterpolator(np.log(self.work), self.restitution)
-        return np.asarray(between(np.log(inside)))
+        at, inside = np.log(self.work), np.clip(work, self.work[0], self.work[-1])
+        lost = self.work - self.unloading_work
+        if np.all(lost > _LOSSLESS * self.work):
+            loss = np.exp(PchipInterpolator(at, np.log(lost))(np.log(inside)))
+            return np.asarray(np.sqrt(np.maximum(1 - loss / inside, 0.0)))
+        return np.asarray(PchipInterpolator(at, self.restitution)(np.log(inside)))
 
 
 def curve_of(
@@ -71,7 +83,7 @@ def curve_of(
     fails is left out. The first contact that reaches the edge of the grid ends the curve.
     """
     works: list[float] = []
-    restitutions: list[float] = []
+    returned: list[float] = []
     back: list[State] = []
     for depth in (_SHALLOWER * depths[0], *depths, _DEEPER * depths[-1]):
         try:
@@ -85,8 +97,8 @@ def curve_of(
             continue
         if collision.loading_work > (works[-1] if works else 0.0):
             works.append(collision.loading_work)
-            restitutions.append(collision.restitution)
-    return Curve(np.array(works), np.array(restitutions))
+            returned.append(collision.unloading_work)
+    return Curve(np.array(works), np.array(returned))
 
 
 @dataclass(frozen=True)
