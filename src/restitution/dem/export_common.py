@@ -1,4 +1,4 @@
-"""Functions that all exports share: the pairs at one velocity, comments, and templates.
+"""What all exports share: the pairs at one velocity, comments, and templates.
 
 DEM codes use one coefficient of restitution e for each pair, so an export is valid at one impact
 velocity. The comments in an export give the origin of e, its error, and its values at other
@@ -11,10 +11,10 @@ from __future__ import annotations
 import re
 import textwrap
 import unicodedata
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from importlib.metadata import PackageNotFoundError, version
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -93,23 +93,82 @@ class Pair:
         return next((fit for fit in self.law.laws if fit.name == name), None)
 
 
-def pairs_at(table: PairTable, velocity: float, code: str, lowest: float) -> list[Pair]:
-    """Return all pairs of `table` with their e at `velocity` (m/s).
+@dataclass(frozen=True)
+class Export:
+    """An export of `table` to `code`, which holds at the impact velocity `velocity` (m/s).
 
-    Raises `CaseError` if e is below `lowest`, the smallest e that `code` reproduces. Raises
-    `DomainError` if `velocity` is outside the computed velocities of a pair.
+    `lowest` is the smallest e that `code` reproduces. `ends` describes the condition at which
+    `code` ends a contact. `constant` says whether e in `code` is the same at every velocity.
     """
-    found = []
-    for i, j, law in table.pairs():
-        e = law.at(velocity).restitution
-        if e < lowest:
-            raise CaseError(
-                f"{law.pair} {_failure(law, e)} at {velocity:.6g} m/s, but {code} accepts no "
-                f"coefficient of restitution below {lowest:g}; export at a higher velocity, or "
-                "use an adhesive contact model"
-            )
-        found.append(Pair(i, j, table.particles[i - 1], table.particles[j - 1], law, velocity, e))
-    return found
+
+    table: PairTable
+    velocity: float
+    code: str
+    lowest: float
+    ends: str
+    constant: bool = True
+
+    @cached_property
+    def pairs(self) -> list[Pair]:
+        """All pairs of the table with their e at `velocity`.
+
+        Raises `CaseError` if e is below `lowest`. Raises `DomainError` if `velocity` is outside the
+        computed velocities of a pair.
+        """
+        found, bodies = [], self.table.particles
+        for i, j, law in self.table.pairs():
+            e = law.at(self.velocity).restitution
+            if e < self.lowest:
+                raise CaseError(
+                    f"{law.pair} {_failure(law, e)} at {self.velocity:.6g} m/s, but {self.code} "
+                    f"accepts no coefficient of restitution below {self.lowest:g}; export at a "
+                    "higher velocity, or use an adhesive contact model"
+                )
+            found.append(Pair(i, j, bodies[i - 1], bodies[j - 1], law, self.velocity, e))
+        return found
+
+    def header(self) -> list[str]:
+        """Write the comment lines at the top of an exported file."""
+        lines = [*self._origin(), "", "Types:"]
+        lines += [f"  {k}: {particle}" for k, particle in enumerate(self.table.particles, 1)]
+        for pair in self.pairs:
+            lines += ["", *_about(pair, self.code)]
+        return wrapped(lines)
+
+    def summary(self, fragment: str) -> list[str]:
+        """Write the comment lines at the top of a script that uses the file `fragment`.
+
+        These comments are shorter than those of `header`, but contain all warnings.
+        """
+        lines = [*self._origin(), f"The comments in {fragment} give the origin of e."]
+        for pair in self.pairs:
+            lines += _warnings(pair)
+        return wrapped(lines)
+
+    def render(self, name: str, comments: str, **values: object) -> str:
+        """Fill `comments` and `values` into the template of the file `name`.
+
+        The template is `templates/NAME.j2`. It can also use `table`, `pairs` and `velocity` of the
+        export, and the names and the filters of `_environment`.
+        """
+        template = _environment().get_template(f"{name}.j2")
+        shared = {"table": self.table, "pairs": self.pairs, "velocity": self.velocity}
+        return template.render(shared, comments=comments, **values)
+
+    def _origin(self) -> list[str]:
+        reason = (
+            f"e is constant in {self.code}, but the e of the pairs depends on the velocity."
+            if self.constant
+            else f"at other velocities e in {self.code} differs from the e of the pairs."
+        )
+        return [
+            f"Coefficients of restitution for {self.code}, written by restitution "
+            f"{program_version()}.",
+            f"They hold at the impact velocity {self.velocity:.6g} m/s only: {reason} Export again "
+            "for another velocity.",
+            f"End of a contact in {self.code}: {self.ends}",
+            "SI units.",
+        ]
 
 
 def contact_time(law: Law, radius: float | None = None) -> float:
@@ -143,50 +202,6 @@ def identifier(particle: Particle, number: int) -> str:
     return f"{word if word[0].isalpha() else f'p_{word}'}_{number}"
 
 
-def header(
-    table: PairTable,
-    pairs: Sequence[Pair],
-    velocity: float,
-    *,
-    code: str,
-    ends: str,
-    constant: bool = True,
-) -> list[str]:
-    """Write the comment lines at the top of an exported file for `code`.
-
-    `ends` describes the condition at which `code` ends a contact. `constant` says whether e in
-    `code` is the same at every velocity.
-    """
-    lines = _origin(velocity, code, ends, constant)
-    lines += ["", "Types:"]
-    lines += [f"  {k}: {particle}" for k, particle in enumerate(table.particles, 1)]
-    for pair in pairs:
-        lines += ["", *_about(pair, code)]
-    return wrapped(lines)
-
-
-def summary(
-    pairs: Sequence[Pair],
-    velocity: float,
-    *,
-    code: str,
-    ends: str,
-    fragment: str,
-    constant: bool = True,
-) -> list[str]:
-    """Write the comments at the top of a script that uses the file `fragment`.
-
-    These comments are shorter than those of `header`, but contain all warnings.
-    """
-    lines = [
-        *_origin(velocity, code, ends, constant),
-        f"The comments in {fragment} give the origin of e.",
-    ]
-    for pair in pairs:
-        lines += _warnings(pair)
-    return wrapped(lines)
-
-
 def commented(lines: Iterable[str], sign: str) -> str:
     """Turn `lines` into comments that begin with `sign`."""
     return "\n".join(f"{sign} {line}".rstrip() for line in lines)
@@ -199,14 +214,6 @@ def xml_comment(lines: Iterable[str]) -> str:
     """
     safe = (re.sub("-(?=-)", "- ", line).rstrip() for line in lines)
     return "\n".join(["<!--", *safe, "-->"])
-
-
-def render(name: str, **values: object) -> str:
-    """Fill `values` into the template of the file `name`, which is `templates/NAME.j2`.
-
-    Templates can also use the names and the filters of `_environment`.
-    """
-    return _environment().get_template(f"{name}.j2").render(values)
 
 
 def comment_text(text: str) -> str:
@@ -250,21 +257,6 @@ def _environment() -> Environment:
         "identifier": identifier,
     }
     return environment
-
-
-def _origin(velocity: float, code: str, ends: str, constant: bool) -> list[str]:
-    reason = (
-        f"e is constant in {code}, but the e of the pairs depends on the velocity."
-        if constant
-        else f"at other velocities e in {code} differs from the e of the pairs."
-    )
-    return [
-        f"Coefficients of restitution for {code}, written by restitution {program_version()}.",
-        f"They hold at the impact velocity {velocity:.6g} m/s only: {reason} Export again for "
-        "another velocity.",
-        f"End of a contact in {code}: {ends}",
-        "SI units.",
-    ]
 
 
 def _about(pair: Pair, code: str) -> list[str]:

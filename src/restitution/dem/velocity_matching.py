@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from restitution.dem.export_common import Pair, render
+from restitution.dem.export_common import Export, commented
 from restitution.laws.law import Law
 
 SCRIPT = "match_velocity.py"
@@ -15,32 +15,21 @@ _TOLERANCE = 0.005  # change of e below which the script stops
 _SAMPLES = 4  # number of table intervals between two neighbouring computed velocities
 
 
-def matching_script(
-    pairs: list[Pair],
-    comments: str,
-    *,
-    code: str,
-    command: str,
-    fragment: str,
-    matched: str,
-    lowest: float,
-) -> str:
-    """Make the text of the script `match_velocity.py`, which belongs to the export to `code`.
+def matching_script(export: Export, command: str, fragment: str, matched: str) -> str:
+    """Make the text of the script `match_velocity.py`, which belongs to `export`.
 
-    `comments` is the text at the top of the script, and `command` is the command that runs the
-    code. `fragment` is the name of the exported file with the pairs, and `matched` is the name of
-    the file that the script writes. `lowest` is the smallest e that the code accepts.
+    `command` is the command that runs the code. `fragment` is the name of the exported file with
+    the pairs, and `matched` is the name of the file that the script writes.
     """
-    return render(
+    return export.render(
         SCRIPT,
-        comments=comments,
-        code=code,
+        commented(export.summary(fragment), "#"),
+        code=export.code,
         command=command,
         fragment=fragment,
         matched=matched,
-        lowest=lowest,
-        pairs=pairs,
-        points=partial(law_points, lowest=lowest),
+        lowest=export.lowest,
+        points=partial(law_points, lowest=export.lowest),
         rounds=_ROUNDS,
         tolerance=_TOLERANCE,
     )

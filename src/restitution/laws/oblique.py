@@ -38,6 +38,7 @@ from restitution.laws.time_integration import (
     StoredForce,
     collide_in_time,
     stored_force,
+    table_rows,
 )
 from restitution.results.reader import Array, RunResults
 
@@ -211,27 +212,19 @@ def oblique_force(run: RunResults, key: str = "angle") -> StoredForce:
     return stored_force(run.folder)
 
 
-def course(collision: ObliqueCollision) -> list[dict[str, float | str]]:
+def course(collision: ObliqueCollision) -> list[dict[str, float]]:
     """Convert the time series of a collision to table rows."""
-    return [
+    return table_rows(
         {
             "impact_velocity_m_per_s": collision.velocity,
             "angle_rad": collision.angle,
-            "time_s": float(time),
-            "normal_force_N": float(normal),
-            "tangential_force_N": float(tangential),
-            "slip_velocity_m_per_s": float(slip),
-            "sticking": float(sticking),
+            "time_s": collision.time,
+            "normal_force_N": collision.normal_force,
+            "tangential_force_N": collision.tangential_force,
+            "slip_velocity_m_per_s": collision.slip_velocity,
+            "sticking": collision.sticking,
         }
-        for time, normal, tangential, slip, sticking in zip(
-            collision.time,
-            collision.normal_force,
-            collision.tangential_force,
-            collision.slip_velocity,
-            collision.sticking,
-            strict=True,
-        )
-    ]
+    )
 
 
 def _slide(

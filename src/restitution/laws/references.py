@@ -42,14 +42,8 @@ def force_references(results: xr.Dataset) -> list[Reference]:
         reach = np.append(np.linspace(float(jkr.break_indentation), 0, 60), indentation)
         found = [Reference(_JKR, reach, jkr.force(reach), False)]
     if np.isfinite(p_y):
-        found.append(
-            Reference(
-                _THORNTON_NING,
-                indentation,
-                ThorntonNing(R, E_star, p_y).loading_force(indentation),
-                True,
-            )
-        )
+        force = ThorntonNing(R, E_star, p_y).loading_force(indentation)
+        found.append(Reference(_THORNTON_NING, indentation, force, True))
     return found
 
 

@@ -20,7 +20,7 @@ intermediate depth, F_max the loading force there, and δ_s the indentation at s
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -260,24 +260,23 @@ def collide_in_time(law: StoredForce, velocity: float) -> ReferenceCollision:
     )
 
 
-def course(collision: ReferenceCollision) -> list[dict[str, float | str]]:
+def course(collision: ReferenceCollision) -> list[dict[str, float]]:
     """Convert the time series of a collision to table rows."""
-    return [
+    return table_rows(
         {
             "impact_velocity_m_per_s": collision.velocity,
-            "time_s": float(time),
-            "indentation_m": float(depth),
-            "force_N": float(force),
-            "closing_velocity_m_per_s": float(closing),
+            "time_s": collision.time,
+            "indentation_m": collision.indentation,
+            "force_N": collision.force,
+            "closing_velocity_m_per_s": collision.closing_velocity,
         }
-        for time, depth, force, closing in zip(
-            collision.time,
-            collision.indentation,
-            collision.force,
-            collision.closing_velocity,
-            strict=True,
-        )
-    ]
+    )
+
+
+def table_rows(columns: Mapping[str, Array | float]) -> list[dict[str, float]]:
+    """Convert columns of equal length to table rows; every row contains the same single numbers."""
+    values = [column.tolist() for column in np.broadcast_arrays(*columns.values())]
+    return [dict(zip(columns, row, strict=True)) for row in zip(*values, strict=True)]
 
 
 def _integrate(

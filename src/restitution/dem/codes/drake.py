@@ -28,14 +28,7 @@ import math
 from dataclasses import dataclass
 
 from restitution.dem.damping import hunt_crossley_dissipation, hunt_crossley_restitution
-from restitution.dem.export_common import (
-    Pair,
-    commented,
-    header,
-    pairs_at,
-    render,
-    summary,
-)
+from restitution.dem.export_common import Export, Pair, commented
 from restitution.dem.friction import friction_note
 from restitution.dem.pair_table import PairTable
 
@@ -78,26 +71,22 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
 
     Returns file names and texts. Raises `CaseError`, `DomainError`.
     """
-    pairs = pairs_at(table, velocity, CODE, LOWEST)
-    head = header(table, pairs, velocity, code=CODE, ends=_ENDS, constant=False)
-    short = summary(pairs, velocity, code=CODE, ends=_ENDS, fragment=FRAGMENT, constant=False)
+    export = Export(table, velocity, CODE, LOWEST, _ENDS, constant=False)
     contacts = [
-        Contact(pair, hunt_crossley_dissipation(pair.restitution) / velocity) for pair in pairs
+        Contact(pair, hunt_crossley_dissipation(pair.restitution) / velocity)
+        for pair in export.pairs
     ]
     return {
-        FRAGMENT: render(
+        FRAGMENT: export.render(
             FRAGMENT,
-            comments=commented(head, "#"),
+            commented(export.header(), "#"),
             contacts=contacts,
-            velocity=velocity,
-            friction_note=friction_note(pairs, "#"),
+            friction_note=friction_note(export.pairs, "#"),
         ),
-        COLLISION: render(
+        COLLISION: export.render(
             COLLISION,
-            comments=commented(short, "#"),
-            table=table,
+            commented(export.summary(FRAGMENT), "#"),
             contacts=contacts,
-            velocity=velocity,
             steps=_STEPS,
         ),
     }

@@ -13,14 +13,7 @@ from __future__ import annotations
 import math
 
 from restitution.dem.adhesion import pull_off_force
-from restitution.dem.export_common import (
-    Pair,
-    commented,
-    header,
-    identifier,
-    number,
-    pairs_at,
-)
+from restitution.dem.export_common import Export, Pair, commented, identifier, number
 from restitution.dem.friction import friction_note
 from restitution.dem.pair_table import PairTable
 from restitution.results.writer import table_text
@@ -43,13 +36,13 @@ _NOTES = [
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
     """Write the two tables; return file names and texts. Raises `DomainError`."""
-    pairs = pairs_at(table, velocity, CODE, 0.0)
-    head = header(table, pairs, velocity, code=CODE, ends=_ENDS) + _NOTES[:2]
-    friction = f"{friction_note(pairs, '#')}\n# Rolling friction 0 is a placeholder."
+    export = Export(table, velocity, CODE, 0.0, _ENDS)
+    head = export.header() + _NOTES[:2]
+    friction = f"{friction_note(export.pairs, '#')}\n# Rolling friction 0 is a placeholder."
     notes = commented(_NOTES[2:], "#")
     comments = f"{commented(head, '#')}\n{friction}\n{notes}\n"
     return {
-        INTERACTIONS: comments + table_text([_interaction(pair) for pair in pairs]),
+        INTERACTIONS: comments + table_text([_interaction(pair) for pair in export.pairs]),
         MATERIALS: comments + table_text(_materials(table)),
     }
 

@@ -15,19 +15,11 @@ from __future__ import annotations
 
 import itertools
 import math
+from dataclasses import replace
 
 from restitution.dem.codes.lammps_kokkos import linear_spring, velocity_damping
 from restitution.dem.codes.lammps_mdr import mdr_offers
-from restitution.dem.export_common import (
-    STEPS,
-    Pair,
-    commented,
-    header,
-    number,
-    pairs_at,
-    render,
-    summary,
-)
+from restitution.dem.export_common import STEPS, Export, Pair, commented, number
 from restitution.dem.friction import STIFFNESS_SHARE, friction_note
 from restitution.dem.pair_table import PairTable
 from restitution.dem.velocity_matching import SCRIPT, matching_script
@@ -66,50 +58,31 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
     walls_only = all(j > len(table.spheres) for _, j in table.laws)
     if not walls_only:
         table.require_spheres(CODE)
-    pairs = pairs_at(table, velocity, CODE, LOWEST)
+    export = Export(table, velocity, CODE, LOWEST, _ENDS)
+    pairs = export.pairs
     spheres = [pair for pair in pairs if not pair.wall]
-    head = header(table, pairs, velocity, code=CODE, ends=_ENDS)
-    short = summary(pairs, velocity, code=CODE, ends=_ENDS, fragment=FRAGMENT)
-    kokkos = summary(
-        pairs, velocity, code=CODE, ends=_KOKKOS_ENDS, fragment=FRAGMENT, constant=False
-    )
+    short = commented(export.summary(FRAGMENT), "#")
+    kokkos = replace(export, ends=_KOKKOS_ENDS, constant=False)
     files = {
-        FRAGMENT: render(
+        FRAGMENT: export.render(
             FRAGMENT,
-            comments=commented(head, "#"),
+            commented(export.header(), "#"),
             friction_note=friction_note(pairs, "#", _TANGENTIAL),
             tangential=_tangential,
             spheres=spheres,
             walls=[pair for pair in pairs if pair.wall],
             mdr=mdr_offers(pairs),
         ),
-        KOKKOS: render(
+        KOKKOS: kokkos.render(
             KOKKOS,
-            comments=commented(kokkos, "#"),
+            commented(kokkos.summary(FRAGMENT), "#"),
             friction_note=friction_note(pairs, "#"),
             spheres=spheres,
             damping=[velocity_damping(pair) for pair in pairs],
             spring=linear_spring(spheres[0]) if len(spheres) == 1 else None,
-            velocity=velocity,
         ),
-        SCRIPT: matching_script(
-            pairs,
-            commented(short, "#"),
-            code=CODE,
-            command="lmp -in my.in",
-            fragment=FRAGMENT,
-            matched="matched.lmp",
-            lowest=LOWEST,
-        ),
-        COLLISION: render(
-            COLLISION,
-            comments=commented(short, "#"),
-            table=table,
-            pairs=pairs,
-            velocity=velocity,
-            size=table.largest_radius,
-            steps=STEPS,
-        ),
+        SCRIPT: matching_script(export, "lmp -in my.in", FRAGMENT, "matched.lmp"),
+        COLLISION: export.render(COLLISION, short, size=table.largest_radius, steps=STEPS),
     }
     floor = _floor(table)
     if floor is not None and not walls_only:
@@ -117,13 +90,11 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
         edge = 24 * size
         height = _GRAINS * 4.2 * size**3 / (_FILLED * edge**2)
         step = min(pair.contact_time for pair in pairs) / _PACKING_STEPS
-        files[PACKING] = render(
+        files[PACKING] = export.render(
             PACKING,
-            comments=commented(short, "#"),
-            table=table,
+            short,
             counts=_counts(table),
             floor=floor,
-            velocity=velocity,
             size=size,
             edge=edge,
             height=height,

@@ -10,17 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from restitution.dem.export_common import (
-    FRICTION,
-    STEPS,
-    Pair,
-    commented,
-    header,
-    number,
-    pairs_at,
-    render,
-    summary,
-)
+from restitution.dem.export_common import FRICTION, STEPS, Export, Pair, commented, number
 from restitution.dem.friction import friction_note
 from restitution.dem.pair_table import PairTable
 from restitution.dem.velocity_matching import SCRIPT, matching_script
@@ -47,35 +37,21 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
     Raises `CaseError`, `DomainError`.
     """
     table.require_all(CODE)
-    pairs = pairs_at(table, velocity, CODE, LOWEST)
-    head = header(table, pairs, velocity, code=CODE, ends=_ENDS)
-    short = summary(pairs, velocity, code=CODE, ends=_ENDS, fragment=FRAGMENT)
+    export = Export(table, velocity, CODE, LOWEST, _ENDS)
+    pairs = export.pairs
     return {
-        FRAGMENT: render(
+        FRAGMENT: export.render(
             FRAGMENT,
-            comments=commented(head, "#"),
-            table=table,
+            commented(export.header(), "#"),
             hardness=_hardness(table),
-            pairs=pairs,
             restitution=_by_types(table, pairs, lambda p: f"${{e_{p.i}_{p.j}}}", walls="1"),
             friction=_by_types(table, pairs, lambda p: number(p.friction), walls=number(FRICTION)),
             friction_note=friction_note(pairs, "#", _TANGENTIAL),
         ),
-        SCRIPT: matching_script(
-            pairs,
-            commented(short, "#"),
-            code=CODE,
-            command="liggghts -in my.in",
-            fragment=FRAGMENT,
-            matched="matched.liggghts",
-            lowest=LOWEST,
-        ),
-        COLLISION: render(
+        SCRIPT: matching_script(export, "liggghts -in my.in", FRAGMENT, "matched.liggghts"),
+        COLLISION: export.render(
             COLLISION,
-            comments=commented(short, "#"),
-            table=table,
-            pairs=pairs,
-            velocity=velocity,
+            commented(export.summary(FRAGMENT), "#"),
             size=table.largest_radius,
             steps=STEPS,
             hardness=_hardness(table),

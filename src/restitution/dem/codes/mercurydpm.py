@@ -8,7 +8,7 @@ sources of MercuryDPM; the export was not tested in MercuryDPM.
 
 from __future__ import annotations
 
-from restitution.dem.export_common import FRICTION, commented, header, pairs_at, render
+from restitution.dem.export_common import FRICTION, Export, commented
 from restitution.dem.friction import friction_note
 from restitution.dem.pair_table import PairTable
 
@@ -20,16 +20,14 @@ _ENDS = "the overlap is back to zero. The force is tensile shortly before, due t
 def write(table: PairTable, velocity: float) -> dict[str, str]:
     """Write a header to include; return its name and text. Raises `CaseError`, `DomainError`."""
     table.require_all(CODE)
-    pairs = pairs_at(table, velocity, CODE, 0.0)
-    head = header(table, pairs, velocity, code=CODE, ends=_ENDS)
+    export = Export(table, velocity, CODE, 0.0, _ENDS)
     return {
-        FILE: render(
+        FILE: export.render(
             FILE,
-            comments=commented(head, "//"),
-            table=table,
-            friction_note=friction_note(pairs, "//"),
+            commented(export.header(), "//"),
+            friction_note=friction_note(export.pairs, "//"),
             placeholder=FRICTION,
-            alike=[pair for pair in pairs if pair.i == pair.j],
-            unlike=[pair for pair in pairs if pair.i != pair.j],
+            alike=[pair for pair in export.pairs if pair.i == pair.j],
+            unlike=[pair for pair in export.pairs if pair.i != pair.j],
         )
     }

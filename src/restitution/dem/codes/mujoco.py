@@ -25,15 +25,7 @@ import math
 from dataclasses import dataclass
 
 from restitution.dem.damping import dashpot_ratio
-from restitution.dem.export_common import (
-    Pair,
-    commented,
-    header,
-    pairs_at,
-    render,
-    summary,
-    xml_comment,
-)
+from restitution.dem.export_common import Export, Pair, commented, xml_comment
 from restitution.dem.friction import friction_note
 from restitution.dem.pair_table import PairTable
 
@@ -81,32 +73,28 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
 
     Returns file names and texts. Raises `CaseError`, `DomainError`.
     """
-    pairs = pairs_at(table, velocity, CODE, LOWEST)
-    head = header(table, pairs, velocity, code=CODE, ends=_ENDS)
-    short = summary(pairs, velocity, code=CODE, ends=_ENDS, fragment=FRAGMENT)
-    contacts = [_contact(pair, velocity) for pair in pairs]
+    export = Export(table, velocity, CODE, LOWEST, _ENDS)
+    contacts = [_contact(pair) for pair in export.pairs]
     return {
-        FRAGMENT: render(
+        FRAGMENT: export.render(
             FRAGMENT,
-            comments=xml_comment(head),
+            xml_comment(export.header()),
             contacts=contacts,
             share=_DEEPEST,
             coarse=_COARSE,
-            friction_note=friction_note(pairs),
+            friction_note=friction_note(export.pairs),
         ),
-        COLLISION: render(
+        COLLISION: export.render(
             COLLISION,
-            comments=commented(short, "#"),
-            table=table,
+            commented(export.summary(FRAGMENT), "#"),
             contacts=contacts,
-            velocity=velocity,
             steps=_STEPS,
         ),
     }
 
 
-def _contact(pair: Pair, velocity: float) -> Contact:
-    duration = max(pair.contact_time, math.pi * velocity / _LARGEST)
+def _contact(pair: Pair) -> Contact:
+    duration = max(pair.contact_time, math.pi * pair.velocity / _LARGEST)
     radius = min(body.radius for body in (pair.first, pair.second) if body.radius is not None)
-    soft = max(duration, math.pi * _DEEPEST * radius / velocity)
+    soft = max(duration, math.pi * _DEEPEST * radius / pair.velocity)
     return Contact(pair, duration, soft, dashpot_ratio(pair.restitution))

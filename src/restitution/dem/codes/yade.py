@@ -20,16 +20,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from restitution.dem.export_common import (
-    Pair,
-    commented,
-    contact_time,
-    density_of,
-    header,
-    pairs_at,
-    render,
-    summary,
-)
+from restitution.dem.export_common import Export, Pair, commented, contact_time, density_of
 from restitution.dem.friction import STIFFNESS_SHARE, friction_note
 from restitution.dem.pair_table import PairTable
 from restitution.dem.velocity_matching import law_points
@@ -60,29 +51,21 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
     Raises `CaseError`, `DomainError`.
     """
     table.require_all(CODE)
-    pairs = pairs_at(table, velocity, CODE, LOWEST)
-    head = header(table, pairs, velocity, code=CODE, ends=_ENDS)
-    short = summary(pairs, velocity, code=CODE, ends=_ENDS, fragment=FRAGMENT)
+    export = Export(table, velocity, CODE, LOWEST, _ENDS)
     return {
-        FRAGMENT: render(
+        FRAGMENT: export.render(
             FRAGMENT,
-            comments=commented(head, "#"),
-            table=table,
-            pairs=pairs,
-            velocity=velocity,
+            commented(export.header(), "#"),
             fit=_FIT,
             wall_density=_WALL_DENSITY,
             density=_density,
             points=partial(law_points, lowest=LOWEST),
-            friction_note=friction_note(pairs, "#", _TANGENTIAL),
+            friction_note=friction_note(export.pairs, "#", _TANGENTIAL),
             tangential=_tangential,
         ),
-        COLLISION: render(
+        COLLISION: export.render(
             COLLISION,
-            comments=commented(short, "#"),
-            table=table,
-            pairs=pairs,
-            velocity=velocity,
+            commented(export.summary(FRAGMENT), "#"),
             steps=_STEPS,
             pair_time=_contact_time,
         ),
