@@ -27,7 +27,12 @@ from restitution.errors import CaseError
 from restitution.results.reader import RunResults
 from restitution.results.schema import COLUMNS
 from restitution.results.total_error import total
-from restitution.results.writer import ResultsFolder, curve_variables, write_table
+from restitution.results.writer import (
+    ResultsFolder,
+    curve_variables,
+    status_attributes,
+    write_table,
+)
 from restitution.runs.companions import Companions
 from restitution.runs.depths import later_touches
 from restitution.runs.error_budget import (
@@ -231,11 +236,7 @@ def _write_results(
         {"units": "1", "long_name": "coefficient of restitution on coarser grids"},
     )
     dataset["refine"] = coarser
-    dataset.attrs |= {
-        "title": case.title,
-        "status": log.status,
-        "warnings": "\n".join(summary["warnings"]),
-    }
+    dataset.attrs |= status_attributes(summary)
     out.write(dataset, summary)
     return summary
 

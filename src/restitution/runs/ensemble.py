@@ -19,6 +19,7 @@ from restitution.results.writer import (
     ResultsFolder,
     curve_variables,
     oblique_variables,
+    status_attributes,
     write_table,
 )
 from restitution.runs.error_budget import MISSING_BAND, Row, add_errors, total_error_summary
@@ -163,11 +164,7 @@ class _Ensemble:
         summary = self._summary(one.summary)
         self.out.put_oblique(mean_oblique(self.oblique))
         dataset = one.smooth().assign(curve_variables(rows) | oblique_variables(self.out.oblique))
-        dataset.attrs |= {
-            "title": self.case.title,
-            "status": self.log.status,
-            "warnings": "\n".join(summary["warnings"]),
-        }
+        dataset.attrs |= status_attributes(summary)
         self.out.write(dataset, summary)
         return summary
 
