@@ -180,7 +180,8 @@ def _write_results(
 ) -> dict[str, Any]:
     """Write the finest curve, the table of all grids and the summary; return the summary."""
     depths = _by_depth(case, runs)
-    finest = [rows[max(runs)] for rows in depths if max(runs) in rows]
+    reached = [rows for rows in depths if max(runs) in rows]  # by the finest grid
+    finest = [rows[max(runs)] for rows in reached]
     lacking = _with_grid_errors(case, folder, finest) if case.total_error else 0
     order = observed_order(depths)
     out.put_curve([{key: row[key] for key in COLUMNS} for row in finest])
@@ -223,11 +224,7 @@ def _write_results(
     dataset = one.dataset.assign(curve_variables(out.rows))
     coarser = sorted(runs)[:-1]
     values = [
-        [
-            rows[factor]["restitution"] if factor in rows else math.nan
-            for rows in depths
-            if max(runs) in rows
-        ]
+        [rows[factor]["restitution"] if factor in rows else math.nan for rows in reached]
         for factor in coarser
     ]
     dataset["coarser_restitution"] = (

@@ -32,7 +32,7 @@ from restitution.runs.run import run_case
 
 CONFIDENCE = 0.95
 # Columns of an ensemble's curve that are not means, and the functions that combine the values of
-# the surfaces. The flags in _ALL are true if they are true for all surfaces.
+# the surfaces. Flags are not listed: they are true if they are true for all surfaces.
 _WORST: dict[str, Callable[[list[float]], float]] = {
     "residual": max,
     "model_error": max,
@@ -40,7 +40,6 @@ _WORST: dict[str, Callable[[list[float]], float]] = {
     "convolutions": sum,
     "refine": max,
 }
-_ALL = {"sticks", "adhesion_resolved", "resolved"}
 
 
 def run_realisations(
@@ -239,12 +238,9 @@ def mean_rows(curves: Sequence[Sequence[Row]], errors: Sequence[Row] = ()) -> li
     for depth in range(max(map(len, curves), default=0)):
         of = [curve[depth] for curve in curves if len(curve) > depth]
         row: Row = {}
-        for name in COLUMNS:
+        for name, column in COLUMNS.items():
             values = [surface[name] for surface in of]
-            if name in _ALL:
-                row[name] = all(values)
-            else:
-                row[name] = float(_WORST[name](values) if name in _WORST else np.mean(values))
+            row[name] = all(values) if column.flag else float(_WORST.get(name, np.mean)(values))
         restitution = [surface["restitution"] for surface in of]
         n = len(of)
         std = float(np.std(restitution, ddof=1)) if n > 1 else math.nan
