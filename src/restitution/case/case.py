@@ -204,8 +204,11 @@ class Case(Table):
         """Whether the materials library supplies a value of a body, so that its spread is known."""
         return any(body.from_library() for body in self.bodies().values())
 
-    def refined(self, factor: int) -> Case:
-        """Return this case with cells `factor` times smaller than those of [grid]."""
+    def refined(self, factor: int | tuple[int, ...]) -> Case:
+        """Return this case with cells `factor` times smaller than those of [grid].
+
+        A tuple contains a factor for each depth.
+        """
         return self.model_copy(update={"grid": self.grid.model_copy(update={"refine": factor})})
 
     def factors(self) -> list[int]:

@@ -13,18 +13,9 @@ from typing import Any, get_args
 
 from pydantic import ValidationError
 
-from restitution.case.bodies import BodyTable, InterfaceTable
 from restitution.case.case import Case
-from restitution.case.quantities import Force, Length, Pressure
 from restitution.case.roughness import CropTable, GeneratedRoughness, MeasuredRoughness
-from restitution.case.schema import (
-    MOST_STEPS,
-    GridTable,
-    ImpactTable,
-    Series,
-    Table,
-    UnloadingTable,
-)
+from restitution.case.schema import MOST_STEPS, Table
 from restitution.errors import CaseError, SurfaceError, shown
 from restitution.surfaces.generate import RoughnessKind
 
@@ -215,20 +206,18 @@ def _in_words(problem: Any, root: type[Table]) -> str:
 
 def _keys_of(path: list[str], loc: tuple[Any, ...], root: type[Table]) -> list[str]:
     """The valid keys of the table at `path`, as written in the file."""
-    if path[:2] == ["roughness", "crop"]:
-        return list(CropTable.model_fields)
-    tables: dict[str, type[Table]] = {
-        "first": BodyTable,
-        "second": BodyTable,
-        "interface": InterfaceTable,
-        "grid": GridTable,
-        "indentation": Series[Length],
-        "load": Series[Force],
-        "impact": ImpactTable,
-        "pressure": Series[Pressure],
-        "unloading": UnloadingTable,
-        "roughness": MeasuredRoughness if "measured" in loc else GeneratedRoughness,
-    }
-    model = tables.get(path[0]) if path else root
+    model = _table_at(path, loc) if path else root
     fields = {} if model is None else model.model_fields
     return [field.alias or name for name, field in fields.items()]
+
+
+def _table_at(path: list[str], loc: tuple[Any, ...]) -> type[Table] | None:
+    """The class of the table of a case at `path`; None if there is no such table."""
+    if path[:2] == ["roughness", "crop"]:
+        return CropTable
+    if path[0] == "roughness":
+        return MeasuredRoughness if "measured" in loc else GeneratedRoughness
+    field = Case.model_fields.get(path[0])
+    kinds = (field.annotation, *get_args(field.annotation)) if field else ()
+    tables = (kind for kind in kinds if isinstance(kind, type) and issubclass(kind, Table))
+    return next(tables, None)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from functools import lru_cache
-from typing import Annotated, Any
+from typing import Annotated, Any, NamedTuple
 
 import pint
 from pydantic import BeforeValidator
@@ -24,49 +24,35 @@ _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*((?:{_UNIT})(?:\s*[*/·]\s*{_UNIT})*)
 # time for longer texts.
 LONGEST = 100
 
-_EXAMPLES = {
-    "m": '"0.25 um"',
-    "Pa": '"750 MPa"',
-    "kg/m^3": '"7850 kg/m^3"',
-    "N": '"0.1 N"',
-    "J/m^2": '"0.09 J/m^2"',
-    "rad": '"30 deg"',
-    "rad/s": '"100 rad/s"',
-    "m/s": '"0.5 m/s"',
-}
-_NAMES = {
-    "m": "a length",
-    "Pa": "a pressure",
-    "kg/m^3": "a density",
-    "N": "a force",
-    "J/m^2": "a work of adhesion",
-    "rad": "an angle",
-    "rad/s": "a spin",
-    "m/s": "a velocity",
-}
-# Usual units. They are suggested if only the capitalisation of a unit is wrong.
-_USUAL = {
-    "m": ("m", "cm", "mm", "um", "µm", "nm", "pm"),
-    "Pa": ("Pa", "kPa", "MPa", "GPa", "N/mm^2", "N/mm2"),
-    "kg/m^3": ("kg/m^3", "kg/m3", "g/cm^3", "g/cm3"),
-    "N": ("N", "kN", "mN", "uN", "µN", "nN"),
-    "J/m^2": ("J/m^2", "J/m2", "mJ/m^2", "mJ/m2", "N/m", "mN/m"),
-    "rad": ("deg", "rad"),
-    "rad/s": ("rad/s", "deg/s", "rpm"),
-    "m/s": ("m/s", "cm/s", "mm/s", "um/s", "km/h"),
+
+class _Quantity(NamedTuple):
+    """A physical quantity of the case file.
+
+    `usual` lists the usual units, one of which is suggested if only the capitalisation of a unit is
+    wrong. `bounds` is the plausible range in SI units. A value outside this range almost certainly
+    has a wrong unit, and could make formulas overflow or underflow.
+    """
+
+    name: str
+    example: str
+    usual: str
+    bounds: tuple[float, float] = (-math.inf, math.inf)
+
+
+_QUANTITIES = {  # by SI unit
+    "m": _Quantity("a length", "0.25 um", "m cm mm um µm nm pm", (1e-12, 1e3)),
+    "Pa": _Quantity("a pressure", "750 MPa", "Pa kPa MPa GPa N/mm^2 N/mm2", (1.0, 1e15)),
+    "kg/m^3": _Quantity("a density", "7850 kg/m^3", "kg/m^3 kg/m3 g/cm^3 g/cm3", (1e-2, 1e6)),
+    "N": _Quantity("a force", "0.1 N", "N kN mN uN µN nN", (1e-15, 1e12)),
+    "J/m^2": _Quantity(
+        "a work of adhesion", "0.09 J/m^2", "J/m^2 J/m2 mJ/m^2 mJ/m2 N/m mN/m", (1e-9, 1e4)
+    ),
+    "rad": _Quantity("an angle", "30 deg", "deg rad"),
+    "rad/s": _Quantity("a spin", "100 rad/s", "rad/s deg/s rpm"),
+    "m/s": _Quantity("a velocity", "0.5 m/s", "m/s cm/s mm/s um/s km/h", (1e-9, 1e4)),
 }
 # Names of units of angle; the unit of a spin must contain one of them.
 _TURNS = ("radian", "degree", "turn", "revolution")
-# Plausible ranges in SI units. A value outside its range almost certainly has a wrong unit, and
-# could make formulas overflow or underflow.
-_BOUNDS = {
-    "m": (1e-12, 1e3),
-    "Pa": (1.0, 1e15),
-    "kg/m^3": (1e-2, 1e6),
-    "N": (1e-15, 1e12),
-    "J/m^2": (1e-9, 1e4),
-    "m/s": (1e-9, 1e4),
-}
 # Errors that pint raises for texts that are not a unit: AssertionError for "¼", KeyError for "m⁰".
 _UNIT_ERRORS = (pint.PintError, ValueError, TypeError, AttributeError, AssertionError, KeyError)
 
@@ -82,13 +68,14 @@ def unit_factors() -> dict[str, dict[str, float]]:
     For example, `unit_factors()["m"]["um"]` is 1e-6.
     """
     return {
-        si: {name: read_quantity(f"1 {name}", si) for name in names} for si, names in _USUAL.items()
+        si: {name: read_quantity(f"1 {name}", si) for name in kind.usual.split()}
+        for si, kind in _QUANTITIES.items()
     }
 
 
 def read_quantity(value: object, unit: str) -> float:
     """Convert `value`, such as "500 um", to the SI `unit`. Raises `ValueError`."""
-    example = f"write for example {_EXAMPLES[unit]}"
+    example = f'write for example "{_QUANTITIES[unit].example}"'
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         raise ValueError(f"{shown(value)} has no unit; {example}")
     if not isinstance(value, str):
@@ -104,7 +91,7 @@ def read_quantity(value: object, unit: str) -> float:
         factor = float(quantity.m_as(unit))
     except _UNIT_ERRORS as error:
         known = isinstance(error, pint.DimensionalityError)
-        problem = f"is not {_NAMES[unit]}" if known else "has an unknown unit"
+        problem = f"is not {_QUANTITIES[unit].name}" if known else "has an unknown unit"
         remedy = _other_case(match[2], unit) or example
         raise ValueError(f"{shown(value)} {problem}; {remedy}") from None
     if unit == "rad/s" and not any(word in str(quantity.units) for word in _TURNS):
@@ -125,8 +112,9 @@ def scaled(value: str, factor: float, digits: int = 17) -> str:
 
 def _other_case(name: str, unit: str) -> str | None:
     """Return advice if `name` differs from a usual unit only in upper and lower case ("gpa")."""
-    alike = (usual for usual in _USUAL[unit] if usual.lower() == name.lower() and usual != name)
-    return next((f"did you mean {usual}?" for usual in alike), None)
+    usual = _QUANTITIES[unit].usual.split()
+    alike = (each for each in usual if each.lower() == name.lower() and each != name)
+    return next((f"did you mean {each}?" for each in alike), None)
 
 
 def read_positive(value: Any, unit: str, *, or_zero: bool = False) -> float:
@@ -141,7 +129,7 @@ def read_positive(value: Any, unit: str, *, or_zero: bool = False) -> float:
         raise ValueError(f"{shown(value)} must not be negative")
     if result <= 0:
         raise ValueError(f"{shown(value)} must be greater than zero")
-    low, high = _BOUNDS[unit]
+    low, high = _QUANTITIES[unit].bounds
     if not low <= result <= high:
         match = _QUANTITY.fullmatch(value)
         hint = _other_case(match[2], unit) if match else None

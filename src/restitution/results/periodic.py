@@ -9,7 +9,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import xarray as xr
 
 from restitution.contact.checks.resolution import median_patch, resolves
@@ -19,7 +18,7 @@ from restitution.contact.state import State
 from restitution.display import quantity, summary_html, summary_text
 from restitution.results.reader import read_json, read_netcdf
 from restitution.results.schema import Column
-from restitution.results.writer import dataset_with_maps
+from restitution.results.writer import curve_variables, dataset_with_maps
 
 _PATCH = "size of the median patch: half of the contact nodes are in patches at least as large"
 COLUMNS = {
@@ -108,12 +107,8 @@ def periodic_row(state: State) -> dict[str, float]:
 
 def periodic_dataset(rows: Sequence[Mapping[str, float]], deepest: State) -> xr.Dataset:
     """Make the content of `results.nc`, with units: the curve, and maps of the deepest state."""
-    data = {
-        column.variable: column.labelled("depth", np.array([row[name] for row in rows]))
-        for name, column in COLUMNS.items()
-    }
     return dataset_with_maps(
-        data,
+        curve_variables(rows, COLUMNS, "depth"),
         deepest,
         pressure="contact pressure at the deepest state",
         lowering="lowering by yielding",

@@ -29,45 +29,39 @@ class Column:
         return along, values, {"units": self.unit, "long_name": self.meaning}
 
 
+def _magnitude(variable: str, meaning: str, *, unit: str = "1", optional: bool = False) -> Column:
+    """Make a column of numbers that are not negative."""
+    return Column(variable, unit, meaning, low=0.0, optional=optional)
+
+
 COLUMNS = {
     "max_indentation_m": Column("indentation", "m", "maximum indentation"),
     "force_N": Column("force", "N", "normal force at maximum indentation"),
-    "contact_area_m2": Column("contact_area", "m2", "real contact area", low=0.0),
-    "stored_energy_J": Column(
-        "stored_energy", "J", "elastic energy at maximum indentation", low=0.0
+    "contact_area_m2": _magnitude("contact_area", "real contact area", unit="m2"),
+    "stored_energy_J": _magnitude(
+        "stored_energy", "elastic energy at maximum indentation", unit="J"
     ),
-    "plastic_work_J": Column("plastic_work", "J", "work dissipated by yielding", low=0.0),
+    "plastic_work_J": _magnitude("plastic_work", "work dissipated by yielding", unit="J"),
     "loading_work_J": Column("loading_work", "J", "work of loading"),
     "unloading_work_J": Column("unloading_work", "J", "work returned until separation"),
     "restitution": Column("restitution", "1", "coefficient of restitution", low=0.0, high=1.0),
-    "impact_velocity_m_per_s": Column(
-        "impact_velocity", "m s-1", "impact velocity for this indentation", optional=True, low=0.0
+    "impact_velocity_m_per_s": _magnitude(
+        "impact_velocity", "impact velocity for this indentation", unit="m s-1", optional=True
     ),
-    "contact_nodes": Column("contact_nodes", "1", "nodes in contact", low=0.0),
-    "contact_patches": Column(
-        "contact_patches", "1", "contact patches (nodes joined by an edge)", low=0.0
+    "contact_nodes": _magnitude("contact_nodes", "nodes in contact"),
+    "contact_patches": _magnitude("contact_patches", "contact patches (nodes joined by an edge)"),
+    "largest_patch_nodes": _magnitude("largest_patch_nodes", "nodes in the largest contact patch"),
+    "residual": _magnitude(
+        "residual", "largest violation of the contact conditions, divided by indentation"
     ),
-    "largest_patch_nodes": Column(
-        "largest_patch_nodes", "1", "nodes in the largest contact patch", low=0.0
-    ),
-    "residual": Column(
-        "residual",
-        "1",
-        "largest violation of the contact conditions, divided by indentation",
-        low=0.0,
-    ),
-    "convolutions": Column(
-        "convolutions", "1", "number of convolutions in loading and unloading", low=0.0
-    ),
+    "convolutions": _magnitude("convolutions", "number of convolutions in loading and unloading"),
     "pull_off_force_N": Column(
         "pull_off_force", "N", "largest tension during unloading", optional=True
     ),
     "separation_indentation_m": Column(
         "separation_indentation", "m", "indentation at separation", optional=True
     ),
-    "restitution_error": Column(
-        "restitution_error", "1", "numerical error of the restitution", low=0.0
-    ),
+    "restitution_error": _magnitude("restitution_error", "numerical error of the restitution"),
     "sticks": Column("sticks", "1", "the bodies stick: unloading returns no work", flag=True),
     "adhesion_resolved": Column(
         "adhesion_resolved",
@@ -76,11 +70,9 @@ COLUMNS = {
         "of the attraction",
         flag=True,
     ),
-    "median_patch_nodes": Column(
+    "median_patch_nodes": _magnitude(
         "median_patch_nodes",
-        "1",
         "size of the median patch: half of the contact nodes are in patches at least as large",
-        low=0.0,
     ),
     "resolved": Column(
         "resolved",
@@ -88,39 +80,22 @@ COLUMNS = {
         f"the median patch has at least {NODES_PER_PATCH} nodes",
         flag=True,
     ),
-    "discretisation_error": Column(
+    "discretisation_error": _magnitude(
         "discretisation_error",
-        "1",
         "error of restitution due to the grid, and to waves of a scan that the grid omits",
         optional=True,
-        low=0.0,
     ),
-    "surface_scatter": Column(
-        "surface_scatter",
-        "1",
-        "error of restitution due to scatter among surfaces",
-        optional=True,
-        low=0.0,
+    "surface_scatter": _magnitude(
+        "surface_scatter", "error of restitution due to scatter among surfaces", optional=True
     ),
-    "material_error": Column(
-        "material_error",
-        "1",
-        "error of restitution due to the spread of library values",
-        optional=True,
-        low=0.0,
+    "material_error": _magnitude(
+        "material_error", "error of restitution due to the spread of library values", optional=True
     ),
-    "total_error": Column(
-        "total_error",
-        "1",
-        "total error of restitution: the errors above, in quadrature",
-        optional=True,
-        low=0.0,
+    "total_error": _magnitude(
+        "total_error", "total error of restitution: the errors above, in quadrature", optional=True
     ),
-    "model_error": Column(
-        "model_error",
-        "1",
-        "error of restitution due to the models of plasticity and adhesion",
-        low=0.0,
+    "model_error": _magnitude(
+        "model_error", "error of restitution due to the models of plasticity and adhesion"
     ),
     "refine": Column(
         "refinement",
@@ -132,15 +107,9 @@ COLUMNS = {
 # Additional columns of the curve of an ensemble. Its other columns combine the surfaces, mostly as
 # means (`runs.ensemble.mean_rows`).
 SPREAD_COLUMNS = {
-    "realisations": Column(
-        "realisations", "1", "number of surfaces that reached this depth", low=0.0
-    ),
-    "restitution_std": Column(
-        "restitution_std",
-        "1",
-        "standard deviation of restitution among surfaces",
-        optional=True,
-        low=0.0,
+    "realisations": _magnitude("realisations", "number of surfaces that reached this depth"),
+    "restitution_std": _magnitude(
+        "restitution_std", "standard deviation of restitution among surfaces", optional=True
     ),
     "restitution_low": Column(
         "restitution_low",
@@ -165,22 +134,22 @@ OBLIQUE_FILE = "oblique.csv"
 # Columns of the table of oblique impacts. The tangential restitution and the angle of rebound refer
 # to the velocity of the centres of the bodies.
 OBLIQUE_COLUMNS = {
-    "impact_velocity_m_per_s": Column(
-        "oblique_velocity", "m s-1", "velocity of the centres before the impact", low=0.0
+    "impact_velocity_m_per_s": _magnitude(
+        "oblique_velocity", "velocity of the centres before the impact", unit="m s-1"
     ),
-    "angle_rad": Column("oblique_angle", "rad", "angle of impact from the normal", low=0.0),
+    "angle_rad": _magnitude("oblique_angle", "angle of impact from the normal", unit="rad"),
     "first_spin_before_rad_per_s": Column(
         "oblique_first_spin_before", "rad s-1", "spin of the first body before the impact"
     ),
     "second_spin_before_rad_per_s": Column(
         "oblique_second_spin_before", "rad s-1", "spin of the second body before the impact"
     ),
-    "friction": Column("oblique_friction", "1", "coefficient of friction", low=0.0),
+    "friction": _magnitude("oblique_friction", "coefficient of friction"),
     "normal_restitution": Column(
         "oblique_normal_restitution", "1", "normal restitution", low=0.0, high=1.0
     ),
-    "normal_restitution_error": Column(
-        "oblique_normal_restitution_error", "1", "error of normal_restitution", 0.0, optional=True
+    "normal_restitution_error": _magnitude(
+        "oblique_normal_restitution_error", "error of normal_restitution", optional=True
     ),
     "tangential_restitution": Column(
         "oblique_tangential_restitution", "1", "tangential restitution", optional=True
@@ -192,25 +161,21 @@ OBLIQUE_COLUMNS = {
     "second_spin_rad_per_s": Column(
         "oblique_second_spin", "rad s-1", "spin of the second body after the impact"
     ),
-    "tangential_restitution_error": Column(
-        "oblique_tangential_restitution_error",
-        "1",
-        "error of tangential_restitution",
-        low=0.0,
-        optional=True,
+    "tangential_restitution_error": _magnitude(
+        "oblique_tangential_restitution_error", "error of tangential_restitution", optional=True
     ),
-    "rebound_angle_error_rad": Column(
-        "oblique_rebound_angle_error", "rad", "error of rebound_angle", low=0.0, optional=True
+    "rebound_angle_error_rad": _magnitude(
+        "oblique_rebound_angle_error", "error of rebound_angle", unit="rad", optional=True
     ),
-    "first_spin_error_rad_per_s": Column(
-        "oblique_first_spin_error", "rad s-1", "error of first_spin", low=0.0, optional=True
+    "first_spin_error_rad_per_s": _magnitude(
+        "oblique_first_spin_error", "error of first_spin", unit="rad s-1", optional=True
     ),
-    "second_spin_error_rad_per_s": Column(
-        "oblique_second_spin_error", "rad s-1", "error of second_spin", low=0.0, optional=True
+    "second_spin_error_rad_per_s": _magnitude(
+        "oblique_second_spin_error", "error of second_spin", unit="rad s-1", optional=True
     ),
-    "friction_loss_J": Column("oblique_friction_loss", "J", "energy lost to friction", low=0.0),
-    "normal_loss_J": Column(
-        "oblique_normal_loss", "J", "energy lost in the normal contact", low=0.0
+    "friction_loss_J": _magnitude("oblique_friction_loss", "energy lost to friction", unit="J"),
+    "normal_loss_J": _magnitude(
+        "oblique_normal_loss", "energy lost in the normal contact", unit="J"
     ),
     "slides": Column(
         "oblique_slides", "1", "the whole contact slides from beginning to end", flag=True
@@ -219,14 +184,10 @@ OBLIQUE_COLUMNS = {
 # Additional columns of the oblique impacts of an ensemble. Its other columns are means over the
 # surfaces, except `slides`, which is true if the contact slides on all surfaces.
 OBLIQUE_SPREAD_COLUMNS = {
-    "realisations": Column(
-        "oblique_realisations", "1", "number of surfaces with this impact", low=0.0
-    ),
-    "tangential_restitution_std": Column(
+    "realisations": _magnitude("oblique_realisations", "number of surfaces with this impact"),
+    "tangential_restitution_std": _magnitude(
         "oblique_tangential_restitution_std",
-        "1",
         "standard deviation of tangential_restitution among surfaces",
-        low=0.0,
         optional=True,
     ),
 }

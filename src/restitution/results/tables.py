@@ -8,7 +8,7 @@ from __future__ import annotations
 import csv
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from restitution.errors import OutputError, one_line
@@ -88,10 +88,9 @@ def _number(path: Path, where: str, column: Column, text: str) -> float:
         if text not in ("true", "false"):
             raise damaged(path, f"{where} is {text!r}, not true or false")
         return float(text == "true")
-    try:
-        value = float(text) if text else math.nan
-    except ValueError:
-        raise damaged(path, f"{where} is {text!r}, not a number") from None
+    value = math.nan
+    with suppress(ValueError):
+        value = float(text)
     if text and math.isnan(value):
         raise damaged(path, f"{where} is {text!r}, not a number")
     check_number(path, where, column, value)

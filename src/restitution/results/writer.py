@@ -308,13 +308,35 @@ def dataset_with_maps(
     return xr.Dataset({**data, **labelled}, coordinates)
 
 
-def curve_variables(rows: Sequence[Mapping[str, float]]) -> dict[str, Any]:
-    """Make the variables of `results.nc` for the rows of a curve."""
+def curve_variables(
+    rows: Sequence[Mapping[str, float]],
+    columns: Mapping[str, Column] = ALL_COLUMNS,
+    along: str = "indentation_max",
+) -> dict[str, Any]:
+    """Make the variables of `results.nc` for the rows of a curve, with the dimension `along`."""
     return {
-        column.variable: column.labelled("indentation_max", np.array([row[name] for row in rows]))
-        for name, column in ALL_COLUMNS.items()
+        column.variable: column.labelled(along, np.array([row[name] for row in rows]))
+        for name, column in columns.items()
         if rows and name in rows[0]
     }
+
+
+def status_attributes(summary: Mapping[str, Any]) -> dict[str, str]:
+    """Return the attributes of `results.nc` that state how the run ended."""
+    return {
+        "title": summary["title"],
+        "status": summary["status"],
+        "warnings": "\n".join(summary["warnings"]),
+    }
+
+
+def case_attributes(summary: Mapping[str, Any], text: str) -> dict[str, str]:
+    """Return the attributes of `results.nc` about the case, whose file has the content `text`."""
+    groups = ("model", "conventions", "derived", "surface", "surface_statistics", "versions")
+    entries = {
+        f"{group}_{key}": str(value) for group in groups for key, value in summary[group].items()
+    }
+    return {"case": text, **entries}
 
 
 def oblique_variables(rows: Sequence[Mapping[str, float]]) -> dict[str, Any]:

@@ -27,7 +27,12 @@ from restitution.errors import CaseError
 from restitution.results.reader import RunResults
 from restitution.results.schema import COLUMNS
 from restitution.results.total_error import total
-from restitution.results.writer import ResultsFolder, curve_variables, write_table
+from restitution.results.writer import (
+    ResultsFolder,
+    curve_variables,
+    status_attributes,
+    write_table,
+)
 from restitution.runs.companions import Companions
 from restitution.runs.depths import later_touches
 from restitution.runs.error_budget import (
@@ -175,7 +180,8 @@ def _write_results(
 ) -> dict[str, Any]:
     """Write the finest curve, the table of all grids and the summary; return the summary."""
     depths = _by_depth(case, runs)
-    finest = [rows[max(runs)] for rows in depths if max(runs) in rows]
+    reached = [rows for rows in depths if max(runs) in rows]  # by the finest grid
+    finest = [rows[max(runs)] for rows in reached]
     lacking = _with_grid_errors(case, folder, finest) if case.total_error else 0
     order = observed_order(depths)
     out.put_curve([{key: row[key] for key in COLUMNS} for row in finest])
@@ -218,11 +224,7 @@ def _write_results(
     dataset = one.dataset.assign(curve_variables(out.rows))
     coarser = sorted(runs)[:-1]
     values = [
-        [
-            rows[factor]["restitution"] if factor in rows else math.nan
-            for rows in depths
-            if max(runs) in rows
-        ]
+        [rows[factor]["restitution"] if factor in rows else math.nan for rows in reached]
         for factor in coarser
     ]
     dataset["coarser_restitution"] = (
@@ -231,11 +233,7 @@ def _write_results(
         {"units": "1", "long_name": "coefficient of restitution on coarser grids"},
     )
     dataset["refine"] = coarser
-    dataset.attrs |= {
-        "title": case.title,
-        "status": log.status,
-        "warnings": "\n".join(summary["warnings"]),
-    }
+    dataset.attrs |= status_attributes(summary)
     out.write(dataset, summary)
     return summary
 

@@ -19,6 +19,7 @@ from restitution.results.writer import (
     ResultsFolder,
     curve_variables,
     oblique_variables,
+    status_attributes,
     write_table,
 )
 from restitution.runs.error_budget import MISSING_BAND, Row, add_errors, total_error_summary
@@ -31,7 +32,7 @@ from restitution.runs.run import run_case
 
 CONFIDENCE = 0.95
 # Columns of an ensemble's curve that are not means, and the functions that combine the values of
-# the surfaces. The flags in _ALL are true if they are true for all surfaces.
+# the surfaces. Flags are not listed: they are true if they are true for all surfaces.
 _WORST: dict[str, Callable[[list[float]], float]] = {
     "residual": max,
     "model_error": max,
@@ -39,7 +40,6 @@ _WORST: dict[str, Callable[[list[float]], float]] = {
     "convolutions": sum,
     "refine": max,
 }
-_ALL = {"sticks", "adhesion_resolved", "resolved"}
 
 
 def run_realisations(
@@ -163,11 +163,7 @@ class _Ensemble:
         summary = self._summary(one.summary)
         self.out.put_oblique(mean_oblique(self.oblique))
         dataset = one.smooth().assign(curve_variables(rows) | oblique_variables(self.out.oblique))
-        dataset.attrs |= {
-            "title": self.case.title,
-            "status": self.log.status,
-            "warnings": "\n".join(summary["warnings"]),
-        }
+        dataset.attrs |= status_attributes(summary)
         self.out.write(dataset, summary)
         return summary
 
@@ -242,12 +238,9 @@ def mean_rows(curves: Sequence[Sequence[Row]], errors: Sequence[Row] = ()) -> li
     for depth in range(max(map(len, curves), default=0)):
         of = [curve[depth] for curve in curves if len(curve) > depth]
         row: Row = {}
-        for name in COLUMNS:
+        for name, column in COLUMNS.items():
             values = [surface[name] for surface in of]
-            if name in _ALL:
-                row[name] = all(values)
-            else:
-                row[name] = float(_WORST[name](values) if name in _WORST else np.mean(values))
+            row[name] = all(values) if column.flag else float(_WORST.get(name, np.mean)(values))
         restitution = [surface["restitution"] for surface in of]
         n = len(of)
         std = float(np.std(restitution, ddof=1)) if n > 1 else math.nan

@@ -65,8 +65,7 @@ def settled(case: Case, folder: Path, warn: Say = ignore) -> Case:
             "(roughness.shortest)"
         )
     found = [finest] * unresolved + factors
-    refine = found[0] if len(set(found)) == 1 else tuple(found)
-    return case.model_copy(update={"grid": case.grid.model_copy(update={"refine": refine})})
+    return case.refined(found[0] if len(set(found)) == 1 else tuple(found))
 
 
 def with_chosen_adhesion(case: Case, contact: Contact, warn: Say = ignore) -> Case:

@@ -27,7 +27,13 @@ from restitution.errors import DomainError, RestitutionError
 from restitution.numerics.convolution.device import current
 from restitution.numerics.kernels import instruction_set
 from restitution.results.interruption import hold_signals
-from restitution.results.writer import ResultsFolder, results_dataset, versions
+from restitution.results.writer import (
+    ResultsFolder,
+    case_attributes,
+    results_dataset,
+    status_attributes,
+    versions,
+)
 from restitution.runs.depths import Depth, collision_at, loaded_depths
 from restitution.runs.error_budget import add_errors, band_warning, total_error_summary
 from restitution.runs.log import RunLog, Say, ignore
@@ -135,7 +141,7 @@ def _write_results(
     dataset = results_dataset(out, deepest)
     with suppress(RestitutionError):  # the smooth curve is optional
         dataset = dataset.assign(smooth_curve(deepest.contact, out.rows))
-    dataset.attrs = _attributes(summary, text)
+    dataset.attrs = status_attributes(summary) | case_attributes(summary, text)
     out.write(dataset, summary)
     return summary
 
@@ -339,19 +345,3 @@ def _unbalanced(checks: list[dict[str, float]]) -> Iterator[str]:
             f"energy, at worst by {worst['relative_to_stored_energy']:+.1%} at "
             f"{1e9 * worst['max_indentation_m']:.4g} nm: raise unloading.steps, or refine the grid"
         )
-
-
-def _attributes(summary: dict[str, Any], text: str) -> dict[str, str]:
-    """Return the attributes of results.nc; all values are strings."""
-    groups = ("model", "conventions", "derived", "surface", "surface_statistics", "versions")
-    return {
-        "title": summary["title"],
-        "status": summary["status"],
-        "warnings": "\n".join(summary["warnings"]),
-        "case": text,
-        **{
-            f"{group}_{key}": str(value)
-            for group in groups
-            for key, value in summary[group].items()
-        },
-    }
