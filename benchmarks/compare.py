@@ -87,7 +87,7 @@ threads most.
 
 **Settings.** Each program runs with the best settings that were found, and in the units that suit
 it best (see the workers in `benchmarks/peers`). For a half-space that is not periodic, Tamaas
-accepts only a force, not an indentation. It receives the correct force, so it need not search for
+accepts only a force, not an indentation. It is given the correct force, so it need not search for
 the force. The installed package of Tamaas runs on one core. SlipPy uses one core on grids of up to
 256², where its threads save no time.
 """

@@ -44,9 +44,9 @@ REPORT = """\
 
 The page of `restitution app` ran in Chromium (headless, without a GPU) on the same machine. The
 slider of Rq moved {changes} times, each time after the previous curve had been drawn. Each curve
-has 24 depths on 512² nodes. The time from a move ends when the browser has painted the new curve of
-COR. The table shows the median of this time in ms (largest time in brackets), and the parts of the
-time.
+has 24 depths on 512² nodes. The time is measured from the move until the browser has painted the
+new curve of COR. The table shows the median of this time in ms (largest time in brackets), and the
+parts of the time.
 
 | case | whole | solve | server and transfer | drawing |
 |---|---|---|---|---|

@@ -154,7 +154,7 @@ def examine(task: tuple[int, Path]) -> list[dict[str, object]]:
         return []
     found = []
     for row, mean, error in zip(rows, means, errors, strict=True):
-        if math.isnan(mean):  # the finer contact reaches the edge of the grid
+        if math.isnan(mean):  # a curve of the reference does not reach this work
             continue
         off = abs(row["restitution"] - mean)
         found.append(
@@ -195,7 +195,10 @@ def _reference(case, rows, seed):
         # If a reference surface has another mass, the same velocity means another loading work.
         mass = contact.pair.mass / case.pair().mass
         curve = curve_of(contact, list(between), case.unloading.method, tolerance=0.001)
-        found.append(curve.at(work * mass))
+        known = (curve.work.min(initial=math.inf) <= work * mass) & (
+            work * mass <= curve.work.max(initial=-math.inf)
+        )
+        found.append(np.where(known, curve.at(work * mass), math.nan))
     deviation = np.std(found, axis=0, ddof=1) if surfaces > 1 else np.zeros(work.size)
     return np.mean(found, axis=0), deviation / math.sqrt(surfaces)
 

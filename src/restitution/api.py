@@ -211,7 +211,7 @@ def collide_obliquely(
 
 
 def _laws_in(given: Folder | Law) -> list[Law]:
-    """Return a list of the given law, the law in a folder, or all laws in a mixture's folder."""
+    """Return, as a list, the given law, the law in a folder, or all laws in a mixture's folder."""
     from restitution.laws.law import Law
     from restitution.laws.law_files import is_mixture, read_laws
 

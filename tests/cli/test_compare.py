@@ -121,4 +121,4 @@ def test_what_cannot_be_compared(refused, results, tmp_path):
     )
     assert "no case has the same swept values" in refused("compare", study, other)
     (tmp_path / "there.csv").write_text("mine")
-    assert "nothing is overwritten" in refused("compare", a, a, "-o", tmp_path / "there.csv")
+    assert "is not overwritten" in refused("compare", a, a, "-o", tmp_path / "there.csv")

@@ -69,7 +69,7 @@ def test_a_new_file_has_a_name_of_its_own(cli, refused, tmp_path, monkeypatch):
     assert cli("new", "--study")[0] == 0
     assert {path.name for path in tmp_path.iterdir()} == {"case.toml", "study.toml"}
     (tmp_path / "case.toml").write_text("mine")
-    assert "case.toml: exists, and nothing is overwritten" in refused("new")
+    assert "case.toml: already exists and is not overwritten" in refused("new")
     assert (tmp_path / "case.toml").read_text() == "mine"
 
 

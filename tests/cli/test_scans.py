@@ -148,7 +148,7 @@ def test_a_scan_may_be_refined_on_its_own_pixels(surface, scan):
             "remove place, or vary seed",
         ),
         ("realisations = 0", "", "roughness.realisations: 0 should be greater than or equal to 1"),
-        ('extend = "mirror"', "", "[grid] is missing; roughness.extend does not"),
+        ('extend = "mirror"', "", "because roughness.extend does not"),
         ('extend = "mirror"', "[grid]\nrefine = 2", "grid: nodes and spacing are missing"),
         ("", '[grid]\nspacing = "1 um"', 'the key "nodes" is missing'),
         ("", GRID.format(nodes=200), "a larger scan, or roughness.extend"),

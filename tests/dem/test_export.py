@@ -125,7 +125,7 @@ def test_refusals(stored, law, refused, cli, tmp_path):
     assert "holds no law" in said(tmp_path, "--to", "csv")
     assert not (tmp_path / "x").exists()
     assert cli("export", one, "--to", "csv", "-o", tmp_path / "y")[0] == 0
-    assert "nothing is overwritten" in refused("export", one, "--to", "csv", "-o", tmp_path / "y")
+    assert "is not overwritten" in refused("export", one, "--to", "csv", "-o", tmp_path / "y")
 
 
 @pytest.mark.parametrize(("code", "note"), [("drake", "time_step=0"), ("mujoco", "1/200")])

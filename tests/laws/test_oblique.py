@@ -255,7 +255,7 @@ def test_the_command_line(cli, refused, computed_yielding, tmp_path):
     assert "--friction: not given" in refused(*given, "--angle", "30 deg")
     assert "--angle" in refused(*given, "--friction", "0.2")
     assert "is not an angle" in refused(*given, "--friction", "0.2", "--angle", "30 m")
-    assert "below 90 degrees" in refused(*given, "--friction", "0.2", "--angle", "95 deg")
+    assert "less than 90 degrees" in refused(*given, "--friction", "0.2", "--angle", "95 deg")
 
 
 def test_the_course_of_a_sliding_impact_is_that_of_coulomb(wall):

@@ -59,5 +59,5 @@ def test_nothing_is_written_over_what_is_there(tmp_path):
         make_folder(tmp_path / "new", "go home")
     require_new_file(None)
     require_new_file(tmp_path / "new.csv")
-    with pytest.raises(OutputError, match="exists, and nothing is overwritten"):
+    with pytest.raises(OutputError, match="already exists and is not overwritten"):
         require_new_file(tmp_path / "new")

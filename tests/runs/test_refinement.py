@@ -113,7 +113,7 @@ def test_a_run_has_it_in_its_results(auto, tmp_path, monkeypatch):
     said = []
     out = ResultsFolder(tmp_path / "unresolved")
     summary = run_realisations(parse_case(shallow), shallow, tmp_path, out, warn=said.append)
-    assert said[0].startswith('grid.refine = "auto" ends at 1')
+    assert said[0].startswith('grid.refine = "auto" stopped at 1')
     assert summary["warnings"][0] == said[0]
     stored = json.loads((out.path / "summary.json").read_text())
     assert stored["warnings"] == summary["warnings"]

@@ -187,8 +187,8 @@ def test_mirrored_tiles_keep_the_scan_in_the_middle(nodes):
         ("twin", (1e-5, 1e-5), None, "needs a seed"),
         ("twin", (1e-5, 1e-5), -1, "needs a seed"),
         ("mirror", (1e-5, 1e-5), 1, "^seed: does not apply to how='mirror'"),
-        ("twin", (0.0, 1e-5), 1, "^argument to: .* are not two positive lengths"),
-        ("mirror", (float("nan"), 1e-5), None, "^argument to: .* are not two positive lengths"),
+        ("twin", (0.0, 1e-5), 1, "^argument `to`: .* are not two positive lengths"),
+        ("mirror", (float("nan"), 1e-5), None, "^argument `to`: .* are not two positive lengths"),
     ],
 )
 def test_bad_requests(how, size, seed, words):

@@ -161,17 +161,17 @@ class Uncertainty:
         return [self.half(axis) for axis in np.eye(self.scaled.shape[1])]
 
     def deviation(self, part: str) -> Array:
-        """Standard deviation of each logarithm due to one of the `parts` of the covariance."""
+        """Standard deviation of the logarithm of each parameter due to one of the `parts`."""
         return np.asarray(np.sqrt(np.diag(self.parts[part])))
 
     @cached_property
     def by_model(self) -> Array:
-        """Change of each logarithm if COR deviates by the model error at every point."""
+        """Change of the logarithm of each parameter if COR is off by the model error everywhere."""
         return np.asarray(np.abs(self.sensitivity @ self.deviations.model))
 
     @cached_property
     def by_one_place(self) -> Array:
-        """Standard deviation of each logarithm due to surfaces if all impacts hit one place."""
+        """Standard deviation of the logarithms due to surfaces if all impacts hit one place."""
         n = len(self.deviations.surfaces)
         return np.asarray(math.sqrt((n + 1) / 2) * self.deviation("surface"))
 

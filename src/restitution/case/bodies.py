@@ -62,7 +62,7 @@ class BodyTable(Table):
     @model_validator(mode="before")
     @classmethod
     def _with_material(cls, value: Any) -> Any:
-        """Fill in omitted keys with values of the materials library."""
+        """Fill in omitted keys with values from the materials library."""
         table = {"material": value, "radius": "flat"} if isinstance(value, str) else value
         if not isinstance(table, dict) or not isinstance(table.get("material"), str):
             return table

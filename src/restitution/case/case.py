@@ -172,8 +172,8 @@ class Case(Table):
         else:
             why = "only a measured surface defines its own grid"
         if "grid" not in self.model_fields_set:
-            raise ValueError(f"the table [grid] is missing; {why}: give nodes and spacing")
-        raise ValueError(f"grid: nodes and spacing are missing; {why}: give both")
+            raise ValueError(f"the table [grid] is missing; give nodes and spacing, because {why}")
+        raise ValueError(f"grid: nodes and spacing are missing; give both, because {why}")
 
     def bodies(self) -> dict[str, BodyTable]:
         """The tables of both bodies; if [second] is left out, it is the same as [first]."""

@@ -53,7 +53,7 @@ _QUANTITIES = {  # by SI unit
 }
 # Names of units of angle; the unit of a spin must contain one of them.
 _TURNS = ("radian", "degree", "turn", "revolution")
-# Errors that pint raises for texts that are not a unit: AssertionError for "¼", KeyError for "m⁰".
+# Errors that pint raises for a text that is not a unit: AssertionError for "¼", KeyError for "m⁰".
 _UNIT_ERRORS = (pint.PintError, ValueError, TypeError, AttributeError, AssertionError, KeyError)
 
 

@@ -63,7 +63,7 @@ def check(
         table = _table(read, contact)
     answers.print(table)
     if (from_where := read.yielding().source) not in ("given", "elastic"):
-        say(f"Yield of the contact is set by {from_where}.")
+        say(f"The yield pressure of the contact comes from {from_where}.")
     deepest = deepest_indentation(read)
     require_possible(contact, deepest)
     with errors.status("checking the surface"):

@@ -57,7 +57,7 @@ def study(
         )
     if tally.failed:
         warn(f'{tally.failed} of {tally.cases} cases failed; see the column "reason" of table.csv')
-    say(f"{tally.done} of {tally.cases} cases")
+    say(f"{tally.done} of {tally.cases} cases complete")
     say_written(out, ["cases", "study.nc", "study.toml", "table.csv"])
     if tally.failed == tally.cases:
         raise typer.Exit(1)

@@ -9,18 +9,17 @@ an expanding cavity (Johnson 1970, J. Mech. Phys. Solids 18, 115–126; Johnson 
 
 c₀ is the ratio of the largest pressure to Y at first yield of a sphere (`yield_coefficient` in
 `theory`). c₁ and c₂ are fitted constants. m measures the strain as an elastic pressure. For a
-sphere of radius R with the contact radius a, m is (2/π) E*a/R, the largest pressure of an elastic
-contact of this radius. At a node of a rough surface at the indentation δ
+sphere of radius R at the indentation δ, m is the largest pressure of an elastic contact at δ, which
+is (2/π) E*a/R with the elastic contact radius a = √(Rδ). At a node of a rough surface, m is
 
     m = m₀ [2(δ − h_c)/(2δ − h_c)]^s,    m₀ = p_e(2δ)/√2.
 
 p_e(2δ) is the pressure at the same node between *elastic* bodies of this shape at twice the
-indentation. The factors 2 and √2 are those of a sphere. An elastic sphere at 2δ has the contact
-radius of a plastic sphere at δ. Its largest pressure is √2 times that of an elastic sphere at δ,
-and the division by √2 removes this factor. While asperities are in separate contact, their slope
-determines m. Once the asperity contacts have merged, the slope of the bodies determines m. The
-bound depends only on the indentation. Therefore, as with a constant bound, the state does not
-depend on the loading path.
+indentation. The factor 2 is that of a sphere: an elastic sphere at 2δ has the contact radius of a
+plastic sphere at δ. The divisor √2 is the ratio of the largest pressures of elastic spheres at 2δ
+and at δ. While asperities are in separate contact, their slope determines m. Once the asperity
+contacts have merged, the slope of the bodies determines m. The bound depends only on the
+indentation. Therefore, as with a constant bound, the state does not depend on the loading path.
 
 The fraction in brackets corrects the depth of an asperity whose crest has an initial gap h_c. Such
 an asperity is deformed by δ − h_c, so p_e should belong to a deformation of 2(δ − h_c). At the

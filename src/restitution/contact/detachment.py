@@ -50,8 +50,8 @@ Detachment = Literal["crack-closure", "pohrt-popov"]
 
 _FACES = np.array([(1, 0), (-1, 0), (0, 1), (0, -1)])
 _AROUND = np.array([(-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1), (0, 0)])
-# Steps of averaging G along the edge. Each step adds a variance of ⅔ cell², so the standard
-# deviation of the weights after all steps is about five cells.
+# Number of steps in which G is averaged along the edge. Each step adds a variance of ⅔ cell², so
+# the standard deviation of the weights after all steps is about five cells.
 _SMOOTHING_STEPS = 32
 # On a curved edge the computed G is too small. The relative error is this factor times the
 # curvature (1/cell). On discs with radii of 5, 10 and 20 cells, the mean of G is 0.970, 0.984 and
@@ -59,8 +59,7 @@ _SMOOTHING_STEPS = 32
 _CURVATURE_BIAS = 0.16
 # Upper limit of the curvature (1/cell) that is used for this correction.
 _LARGEST_CURVATURE = 0.35
-# Smallest and largest distance (cells) that is kept between a node released alone and the next
-# released node.
+# Limits of the distance (cells) between nodes that are released in the same step.
 _RELEASE_RADIUS, _LARGEST_RADIUS = 3, 40
 # An edge moves by whole nodes, so the energy release rate G scatters along an edge at rest. On
 # coarse grids, the largest G of an edge is this factor times the mean. A node is therefore released

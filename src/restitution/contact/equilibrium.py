@@ -162,7 +162,7 @@ def require_converged(found: Minimum, solve: str, residual: float, reached: floa
         raise NotConvergedError(
             f"{solve} stopped at a residual of {reached:.1e} (tolerance: {residual:.0e}) "
             f"after {found.iterations} iterations; use another grid spacing or a smoother surface "
-            "(in Python, also a larger residual)"
+            "(in Python, the argument residual sets the tolerance)"
         )
 
 

@@ -158,7 +158,7 @@ def solve_without_work(
             if shallower is not None:
                 inside[shallower.box] |= shallower.box_pressure != 0
             found = bounding_box(inside)
-            assert found is not None  # the gap is zero at first touch
+            assert found is not None  # the gap is zero at the node that touches first
             box, held = found, inside[found]
         state = grow_contact(
             contact,

@@ -18,7 +18,7 @@ from restitution.contact.state import Array, State
 from restitution.numerics.quadrature import integrate_curve
 
 _FEW_NODES = 10  # a contact of fewer nodes has too few edge nodes to compute a balance
-_SMOOTHED = 11  # number of points in each parabola that smooths the force
+_SMOOTHED = 11  # number of points to which each parabola that smooths the force is fitted
 
 # A change of the force between two points is a jump if it exceeds this fraction of the largest
 # tension.
@@ -66,7 +66,7 @@ class UnloadingCurve:
         return replace(self, indentation=self.indentation[fewer], force=self.force[fewer])
 
     def largest_tension(self) -> float:
-        """Largest tension (N). Balances scatter, so their force is smoothed first."""
+        """Largest tension (N). The forces at balance scatter, so they are smoothed first."""
         F, largest = self.force, -float(self.force.min())
         if not self.balanced:
             return largest
@@ -180,9 +180,10 @@ class SharedUnloading:
         return abs(force - known) <= _SAME * max(self.curve.largest_tension(), abs(force))
 
     def below(self, state: State) -> Iterator[State]:
-        """Yield the known states at smaller indentations than `state`.
+        """Iterate over the known states at smaller indentations than `state`.
 
-        Their adhesive work is changed, so that their loading work continues that of `state`.
+        A constant is added to their adhesive work, so that the loading work has no step between
+        `state` and these states.
         """
         following = self._following(state)
         first = following[0]

@@ -65,7 +65,7 @@ def dashpot_ratio(restitution: float) -> float:
 
 
 def hunt_crossley_dissipation(restitution: float) -> float:
-    """Return the product dV (dimensionless) of dissipation d and impact velocity V from e > 0."""
+    """Return d·V (dimensionless), dissipation times impact velocity, for the restitution e > 0."""
     e = restitution
     if 1 - e < _NEARLY_ELASTIC:
         return 1.5 * (1 - e**2) / (1 + e**3)

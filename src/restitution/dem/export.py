@@ -72,7 +72,7 @@ def write_export(texts: dict[str, str], out: Path) -> list[Path]:
         there = [name for name in texts if (out / name).exists()]
     if there:
         raise OutputError(
-            f"{out / there[0]}: exists, and nothing is overwritten; name another folder with -o"
+            f"{out / there[0]}: already exists and is not overwritten; name another folder with -o"
         )
     for name, text in texts.items():
         replace_file(out / name, lambda to, text=text: to.write_text(text, encoding="utf-8"))  # type: ignore[misc]

@@ -72,7 +72,7 @@ class ObliqueCollision:
         time: Time since first touch (s).
         normal_force: Normal force (N).
         tangential_force: Tangential force (N).
-        slip_velocity: Velocity of the contact point (m/s).
+        slip_velocity: Relative tangential velocity of the surfaces at the contact (m/s).
         sticking: Fraction of the normal force on sticking springs (dimensionless).
     """
 

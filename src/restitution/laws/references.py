@@ -30,8 +30,8 @@ class Reference:
 def force_references(results: xr.Dataset) -> list[Reference]:
     """Closed forms of the force (N) against indentation (m): elastic and, if bodies yield, plastic.
 
-    The curves begin below the smallest indentation at which the run has a force, on loading or on
-    unloading.
+    The curves begin below the smallest indentation for which the run contains a force, whether on
+    loading or on unloading.
     """
     R, E_star, p_y, w = _parameters(results)
     deepest = float(results["indentation"].max())

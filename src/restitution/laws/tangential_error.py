@@ -39,11 +39,11 @@ from restitution.laws.time_integration import StoredForce
 # All differences found in the comparison are within the errors that these constants give. The top
 # of this file defines χ and β.
 #
-# Relative errors of the stiffness for ν = 0: of smooth contacts, and in addition of rough contacts.
+# Relative error of the stiffness for ν = 0: of every contact, and the error added if it is rough.
 _NUMERICAL, _ROUGH = 0.005, 0.04
-# _SHAPE is the relative error of the stiffness due to the shape of the patches, divided by χ. It is
-# constant up to _ALIGNED patches and then decreases with the number of patches. Above _INDEPENDENT
-# patches it is constant again, because small patches are then parts of larger ones.
+# The relative error of the stiffness due to the shape of the patches is _SHAPE χ for up to _ALIGNED
+# patches. It decreases with the number of patches up to _INDEPENDENT patches and not further,
+# because additional patches are only fragments of larger ones.
 _SHAPE, _ALIGNED, _INDEPENDENT = 0.35, 4.0, 36.0
 # Relative errors of stiffness and impulse after yield. For rough contacts they are multiplied by
 # the largest ratio of the depths of two neighbouring unloading curves.

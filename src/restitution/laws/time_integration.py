@@ -44,7 +44,8 @@ Force = Callable[[float], float]
 _RTOL = 1e-10
 # Because of integration errors, an impact may exceed the deepest stored depth by this fraction.
 _SLACK = 1e-3
-# Largest exponent of W as a power of δ. If the exponent is larger, adhesion nearly cancels W.
+# Largest accepted exponent n in W ∝ δⁿ, where W is the loading work. For larger n, adhesion nearly
+# cancels W.
 _STEEPEST = 6.0
 _SAME = 1e-5  # largest relative difference of depths that count as equal
 

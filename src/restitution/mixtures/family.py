@@ -133,7 +133,10 @@ class Family:
         }
 
     def _velocities(self, radius: float) -> list[float]:
-        """Velocities (m/s) of the mixture, extended to cover W/R*³ of every pair of the family."""
+        """Velocities (m/s) of the mixture, extended for all pairs of the family.
+
+        Impacts of two pairs of a family correspond if W/R*³ is equal, where W is the impact energy.
+        """
         asked = self.mixture.velocities
         own = _particle(self.first, radius if self.second.wall else 2 * radius)
         other = _particle(self.second, None if self.second.wall else 2 * radius)

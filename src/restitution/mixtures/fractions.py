@@ -9,7 +9,8 @@ from typing import Any
 from restitution.errors import CaseError
 
 KEYS = ("mass_fractions", "number_fractions")
-_OFF = 0.02  # largest difference of the sum of fractions from 1; they are often rounded
+# Largest allowed deviation of the sum of fractions from 1. Given fractions are often rounded.
+_OFF = 0.02
 
 
 def number_fractions(

@@ -249,7 +249,7 @@ class StoredCase:
     Attributes:
         name: Name of the folder of the case.
         status: One of the values of `STATUS`.
-        reason: Reason of a failure; otherwise empty.
+        reason: Reason for a failure; otherwise empty.
         swept: The swept values, by key.
         curve: Curve of the case; empty unless the case is complete.
     """

@@ -198,7 +198,7 @@ def make_folder(path: Path, remedy: str = "move it away") -> bool:
 def require_new_file(path: Path | None) -> None:
     """Raise `OutputError` if the file `path` exists; None is accepted."""
     if path is not None and path.exists():
-        raise OutputError(f"{path}: exists, and nothing is overwritten; name another file")
+        raise OutputError(f"{path}: already exists and is not overwritten; name another file")
 
 
 def write_checksums(folder: Path, names: Sequence[str]) -> None:

@@ -62,8 +62,8 @@ _FEW_NODES, _SHARE_UNRESOLVED = (3, 7), (0.6, 0.1)
 # late and all at once, so its COR may have almost any error.
 _PATCH_NODES = (1, 3, 7, 14, 30, 100, 400)
 _PATCH_ERROR = (0.9, 0.4, 0.15, 0.08, 0.05, 0.024, 0.008)
-# Error due to the surface, in standard deviations of COR between surfaces. With eight surfaces, it
-# exceeds the true error in about 88 % of cases.
+# Estimated error due to the surface, in standard deviations of COR between surfaces. With eight
+# surfaces, this estimate exceeds the true error in about 88 % of cases.
 _SCATTER = 1.5
 # Differences of COR between grids and between surfaces are smoothed over these lengths, in the
 # logarithm of the loading work, because single differences may vanish by chance.
@@ -125,9 +125,9 @@ def unseen_yield(companions: Companions, waves: Band, rows: Sequence[Row]) -> Ar
 def grid_error(
     change: Array, unseen: Array, work: Array, rows: Sequence[Row], octaves: float
 ) -> tuple[Array, Array]:
-    """Discretisation error of COR of `rows`, and the part due to waves that the grid omits.
+    """Discretisation error of the COR of each row, and the part due to waves that the grid omits.
 
-    `change` is the difference of COR from the value on cells twice as large, at `work` (J).
+    `change` is COR minus its value on cells twice as large, at the loading work `work` (J).
     `unseen` comes from `unseen_yield`, and `octaves` is `Band.octaves`.
     """
     near = np.sqrt(_smoothed(change**2, work, _NEAR_GRID))

@@ -59,10 +59,10 @@ def settled(case: Case, folder: Path, warn: Say = ignore) -> Case:
         first_depth, last_depth = (f"{scale * depths[k]:.4g}" for k in (0, unresolved - 1))
         where = f"at {first_depth}" if unresolved == 1 else f"from {first_depth} to {last_depth}"
         warn(
-            f'grid.refine = "auto" ends at {finest} ({why}). This grid does not resolve the '
+            f'grid.refine = "auto" stopped at {finest} ({why}). This grid does not resolve the '
             f"contact {where} {unit}: half of the contact is in patches of fewer than "
-            f"{_MARGIN * NODES_PER_PATCH:.0f} nodes; begin deeper, or leave out short waves "
-            "(roughness.shortest)"
+            f"{_MARGIN * NODES_PER_PATCH:.0f} nodes; begin with a larger value, or leave out short "
+            "waves (roughness.shortest)"
         )
     found = [finest] * unresolved + factors
     return case.refined(found[0] if len(set(found)) == 1 else tuple(found))

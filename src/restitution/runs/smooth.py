@@ -1,4 +1,4 @@
-"""Curves of the smooth bodies of a case with the same models, for comparison with rough bodies."""
+"""Curves of the bodies of a case without their roughness, for comparison with rough bodies."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ from restitution.numerics.grid import Grid
 from restitution.surfaces.surface import Surface
 
 _LONG = 1.0  # surfaces that take less time (s) to make are not cached
-_MOST = 2**30  # largest size of all files together (bytes)
+_MOST = 2**30  # largest total size of all files (bytes)
 _LARGEST = 2**28  # largest size of the heights of one cached surface (bytes)
 _REST = 2**12  # estimated largest size of a file without its heights (bytes)
 

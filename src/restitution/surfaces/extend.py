@@ -57,7 +57,7 @@ def extend(
 
 def _with_pixels_of(surface: Surface, size: tuple[float, float]) -> Grid:
     if not all(math.isfinite(edge) and edge > 0 for edge in size):
-        raise SurfaceError(f"argument to: {size} m are not two positive lengths")
+        raise SurfaceError(f"argument `to`: {size} m are not two positive lengths")
     nx, ny = (
         math.ceil(edge / h * (1 - 1e-9)) for edge, h in zip(size, surface.grid.spacing, strict=True)
     )

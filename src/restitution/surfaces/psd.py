@@ -47,7 +47,7 @@ class DirectedSpectrum(NamedTuple):
 
 
 def power_spectral_density(surface: Surface) -> Array:
-    """Power spectral density C (m⁴) at the wave vectors 2π times `numpy.fft.fftfreq`.
+    """Power spectral density C (m⁴) at the wave vectors 2π·`numpy.fft.fftfreq(n, spacing)`.
 
     The shape is `grid.nodes`. C is exact for a periodic surface; otherwise it is estimated with
     tapers.

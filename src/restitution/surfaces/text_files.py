@@ -84,11 +84,11 @@ def _decode(path: Path) -> str:
 
 
 def _parse_rows(path: Path, data: list[tuple[int, str]], *, plain: bool) -> list[list[float]]:
-    """Parse all lines. Raise `NotAMatrixError` for text and `SurfaceError` for damaged lines.
+    """Parse all lines. Raise `SurfaceError` for damaged lines.
 
-    Text between scan lines counts as a damaged line, because other readers would silently skip it.
-    Text above the scan lines also counts as damaged if the comments show that the file is a `plain`
-    matrix.
+    Text between scan lines is a damaged line, because other readers would silently skip it. Text
+    above the scan lines raises `NotAMatrixError`, unless the comments show that the file is a
+    matrix (`plain`); then it is a damaged line, too.
     """
     rows: list[list[float]] = []  # a line of text becomes an empty row
     first: NotAMatrixError | None = None

@@ -208,7 +208,7 @@ def _between(table: Array, at: Array) -> Array:
 
 
 def _nodes(most: tuple[int, int]) -> tuple[int, int]:
-    """Return the smallest grid with a fast FFT that resolves up to `most` periods per axis."""
+    """Return the smallest grid that resolves `most` periods per axis and suits the FFT."""
     from scipy.fft import next_fast_len
 
     return (

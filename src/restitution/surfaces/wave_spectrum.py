@@ -111,10 +111,11 @@ def spectrum_of(scan: Surface, period: tuple[float, float]) -> WaveSpectrum:
 def _moments(spectrum: WaveSpectrum) -> Array:
     """Mean square height and mean square slope (rows) for the powers C and C/k² (columns).
 
-    C is the power of `spectrum` with the factor a + b/k², and k the size of the scan divided by the
-    wavelength. Slopes are differences between neighbouring pixels, as in `rms_slope`. Long waves
-    are summed one by one, over the wave vectors of the twin. Short waves are summed over the wave
-    vectors of the scan, which are fewer, because the twin is not smaller than the scan.
+    The power of `spectrum` is C (a + b/k²), where k is the size of the scan divided by the
+    wavelength, and a and b are its coefficients `flat` and `steep`. Slopes are differences between
+    neighbouring pixels, as in `rms_slope`. Long waves are summed one by one, over the wave vectors
+    of the twin. Short waves are summed over the wave vectors of the scan, which are fewer, because
+    the twin is not smaller than the scan.
     """
     wx, wy = spectrum.waves
     (mx, my), (hx, hy) = spectrum.density.shape, spectrum.pixel

@@ -144,7 +144,7 @@ class Luding:
         return k_c * k2 / (k2 + k_c) * d0
 
     def loading_work(self, indentation: Values) -> Array:
-        """Work done from first touch to an indentation on first loading.
+        """Work done during first loading, from first touch to `indentation`.
 
         The elastic part of the work is ½k₂(δ − δ₀)², with the unloading stiffness k₂ and the
         residual indentation δ₀. The dissipated part is ½k₁ min(δ, δ*) δ₀, with the loading

@@ -20,10 +20,10 @@ from restitution.theory import Hertz, Kendall
 
 # Limits beyond which an input is doubtful.
 _TILTED = 0.5  # fraction of the variance of the heights that a plane explains
-_OBLONG = 0.01  # relative difference of the edges of a pixel
+_OBLONG = 0.01  # relative difference between the two edge lengths of a pixel
 _STEEP = 0.5  # rms slope beyond which small-slope theory is inaccurate
-# Range of the ratio of the pressure of a fully plastic contact to E*: from very soft metals to the
-# ideal strength of solids.
+# Plausible range of p/E*, where p is the pressure of a fully plastic contact: from very soft metals
+# to the ideal strength of solids.
 _PRESSURES = (1e-5, 0.3)
 _NEAR_EDGE = 0.1  # distance of first touch from the edge, as a fraction of the width of the grid
 

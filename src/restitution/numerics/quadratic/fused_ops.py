@@ -22,10 +22,9 @@ Bounds = tuple[Bound, Bound]  # lower, upper
 
 
 def as_rows(lower: Bound, upper: Bound, p: Array) -> Bounds:
-    """Convert bounds that are numbers to arrays of the shape of `p`, if `loop_takes` accepts `p`.
+    """Expand scalar bounds to arrays of the same shape as `p`, if `loop_takes` accepts `p`.
 
-    The compiled loops require arrays. Each array stores only one row, which is broadcast to all
-    rows.
+    The compiled loops require arrays. Only one row is stored; it is broadcast to all rows.
     """
 
     def rows(bound: Bound) -> Bound:

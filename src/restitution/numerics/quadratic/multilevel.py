@@ -56,9 +56,9 @@ _PLACES = 8  # number of places along each axis for which local means are comput
 
 # In a nearly fully plastic contact, the gradient is used to correct the contact edge of a guess.
 # First number: the guess is corrected if at most this fraction of the contact nodes is strictly
-# between the bounds. Second number: size of the correction, as a fraction of the pressure that
-# would make the gradient of a node zero if it acted on this node alone. Values from 0.15 to 0.5 of
-# the second number work nearly as well.
+# between the bounds. Second number: size of the correction, as a fraction of the pressure which,
+# applied at one node alone, would make the gradient at that node zero. For the second number, any
+# value from 0.15 to 0.5 works nearly as well.
 _MAX_FREE_FRACTION, _GAP_FRACTION = 0.05, 0.3
 # The local mean is damped if the Rayleigh quotient of K·M on the free nodes (those strictly between
 # the bounds) exceeds the first number, where M is the approximate inverse of K. The second number
