@@ -43,8 +43,9 @@ REPORT = """\
 {date}, {machine}.
 Measured versions: {versions}.
 
-This page compares the time of restitution with that of other programs for the same contacts. Each
-ratio is the time of the other program divided by the time of restitution in the same run. `make
+This page compares the computing time of the program restitution with that of other programs for the
+same contacts. Each ratio is the time of the other program divided by that of restitution in the
+same run. `make
 bench-peers` writes this page; [peers.csv](peers.csv) contains all columns.
 
 {table}

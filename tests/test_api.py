@@ -58,7 +58,7 @@ def test_warnings_of_a_run_are_issued(case, tmp_path):
     ("change", "message"),
     [
         ({"grid": {"nodes": 72}}, 'case: grid: the key "spacing" is missing'),
-        ({"title": Path("a")}, "case: .*; use only value types of a case file"),
+        ({"title": Path("a")}, "case: .*; use only types of values that a case file allows"),
     ],
 )
 def test_tables_that_are_wrong_are_refused(case, tmp_path, change, message):

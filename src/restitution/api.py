@@ -81,7 +81,7 @@ def _read(case: Folder | Mapping[str, Any]) -> tuple[Case, str, Path]:
             text = tomli_w.dumps(case)
         except TypeError as error:
             raise CaseError(
-                f"{error}; use only value types of a case file (docs/case-file.md)"
+                f"{error}; use only types of values that a case file allows (docs/case-file.md)"
             ) from None
         return parse_case(text), text, name
 

@@ -77,7 +77,7 @@ def test_every_verb_refuses_what_does_not_fit(
     grids = ("--grids", "2") if verb == "converge" else ()
     message = refused(verb, tmp_path / "case.toml", *out, *grids)
     assert "nodes take about" in message
-    assert "of memory, but 400 MB are available; use fewer nodes" in message
+    assert "of memory, but only 400 MB is available; use fewer nodes" in message
 
 
 def test_generated_surfaces_are_refused_before_they_are_made(case_text, tmp_path, monkeypatch):

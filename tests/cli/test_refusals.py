@@ -223,7 +223,7 @@ def test_contact_off_the_domain_keeps_the_depths_before_it(cli, case_text, tmp_p
 def test_more_load_than_the_grid_carries(refused_case, case_text):
     span = case_text[case_text.index("[indentation]") : case_text.index("[unloading]")]
     message = refused_case((span, '[load]\nvalues = ["5 N"]\n'), verb="run")
-    assert "load: 5 N is more than the force of the whole grid at the yield pressure" in message
+    assert "load: 5 N is more than the whole grid carries at the yield pressure" in message
 
 
 def measured(case_text, line):

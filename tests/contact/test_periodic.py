@@ -272,7 +272,7 @@ def test_elastic_contact_cannot_be_deeper_than_complete():
         ({"work_of_adhesion": 0.05}, 'adhesion: "jkr" is not defined for a periodic contact'),
         (
             {"yield_strength": 1e9, "plasticity": None},
-            "plasticity: a periodic contact is elastic or has a constant",
+            "plasticity: a periodic contact must be elastic or have a constant",
         ),
         ({"yield_pressure": 1e9, "plasticity": "truncated"}, "plasticity: a periodic contact"),
         ({"pair": Pair(WALL, Body(1e-3, 210e9, 0.25))}, "periodic: a periodic contact needs two"),

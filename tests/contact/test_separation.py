@@ -35,7 +35,7 @@ def test_bodies_that_do_not_part_are_said_so(pressed, monkeypatch):
     monkeypatch.setattr(separation, "_MOST_STEPS", 3)
     with pytest.raises(NotConvergedError, match="have not separated after 3 steps") as refusal:
         list(separation.separate(pressed))
-    assert "check work_of_adhesion, 0.09 J/m2" in str(refusal.value)
+    assert "check work_of_adhesion (0.09 J/m2)" in str(refusal.value)
 
 
 def loaded(detachment, n=40, depth=3.5e-9):

@@ -42,7 +42,7 @@ def test_the_least_limit_counts(monkeypatch):
     assert memory.available() == 3e9
     memory.require(2.9e9, "this", "use less")
     with pytest.raises(
-        CaseError, match=r"^this take about 3.1 GB of memory, but 3 GB are available"
+        CaseError, match=r"^this take about 3.1 GB of memory, but only 3 GB is available"
     ):
         memory.require(3.1e9, "this", "use less")
 

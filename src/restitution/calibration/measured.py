@@ -92,7 +92,7 @@ def _rows(path: Path) -> list[tuple[int, dict[str, str]]]:
                 f"columns, separated by commas, and this file has {has}"
             )
         if columns.count(name) > 1:
-            raise CaseError(f"{path}: has two columns {name}; remove one of them")
+            raise CaseError(f"{path}: has more than one column {name}; keep only one")
     return rows
 
 

@@ -1,1 +1,1 @@
-"""The case file: reading, checks, and its content as data in SI units. Nothing is solved here."""
+"""Read and check the case file, and hold its content as data in SI units. Nothing is solved."""

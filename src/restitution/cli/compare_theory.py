@@ -78,7 +78,7 @@ def compare_theory(
         names = ", ".join(name for name, why in missing.items() if why == reason)
         say(f"left out: {names}: {reason}")
     if {"sticking", "thornton-ning"} <= missing.keys():
-        say("The bodies are elastic and do not adhere: only Hertz applies, COR = 1.")
+        say("The bodies are elastic and do not adhere: only Hertz theory applies, and COR is 1.")
     if out is not None:
         say_written(out, [path.name for path in written])
     if law is None:

@@ -45,8 +45,8 @@ from restitution.numerics.read_only import freeze
 from restitution.numerics.truncated_newton import minimise_locally
 
 # Largest ratio of the spacing to the shorter of two lengths: the length of the cohesive zone,
-# E*z₀²/w, and sqrt(R*z₀). On coarser grids the edge of the contact is pinned between nodes, which
-# falsifies the dissipated energy and the pull-off force.
+# E* z₀²/w, and sqrt(R* z₀). On coarser grids the edge of the contact is pinned between nodes, which
+# makes the dissipated energy and the pull-off force wrong.
 COARSEST = 0.3
 COMPANION = "companion"  # provenance key of a surface that serves only to compare grids
 

@@ -170,7 +170,8 @@ def follow(
     z0 = contact.equilibrium_separation
     sign = 1.0 if target > state.indentation else -1.0
     length = _FIRST_STEP * z0
-    if state.smallest_gap < 1.1 * z0:  # in contact, start with 2 % of the indentation or more
+    # If the bodies touch, the first step is at least 2 % of the indentation.
+    if state.smallest_gap < 1.1 * z0:
         length = max(length, 0.02 * abs(state.indentation))
     previous: CohesiveState | None = None
     rejected = 0  # convolutions of steps that were not accepted

@@ -184,8 +184,8 @@ class Contact:
             )
         if self.plasticity != "equilibrium":
             raise CaseError(
-                "plasticity: a periodic contact is elastic or has a constant pressure bound; give "
-                'a yield_pressure and plasticity "equilibrium"'
+                "plasticity: a periodic contact must be elastic or have a constant pressure bound; "
+                'for bodies that yield, give a yield_pressure and plasticity "equilibrium"'
             )
 
     @property

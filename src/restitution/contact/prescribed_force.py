@@ -50,7 +50,7 @@ def solve_at_force(contact: Contact, force: float, *, start: State | None = None
     capacity = contact.hardness * contact.grid.cell_area * nx * ny
     if force >= capacity:
         raise DomainError(
-            f"force: {force:.4g} N is more than the force of the whole grid at the yield pressure "
+            f"force: {force:.4g} N is more than the whole grid carries at the yield pressure "
             f"({capacity:.4g} N); use a larger grid or a smaller force"
         )
     state = start

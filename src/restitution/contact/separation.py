@@ -170,8 +170,8 @@ def _unload(
         step *= min(2.0, max(0.5, 0.8 * allowed / late if late > 0 else 2.0))
     raise NotConvergedError(
         f"the bodies have not separated after {_MOST_STEPS} steps of unloading (indentation "
-        f"{1e9 * state.indentation:.4g} nm, force {state.force:.3g} N); check work_of_adhesion, "
-        f"{contact.work_of_adhesion:g} J/m2, or increase the tolerance of the restitution"
+        f"{1e9 * state.indentation:.4g} nm, force {state.force:.3g} N); check work_of_adhesion "
+        f"({contact.work_of_adhesion:g} J/m2), or increase the tolerance of the restitution"
     )
 
 

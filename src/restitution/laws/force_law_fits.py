@@ -59,7 +59,7 @@ def fitted_laws(law: Law, begin: Begin | None = None) -> tuple[FittedLaw, ...]:
 def _all(law: Law) -> Iterator[FittedLaw]:
     yield _constant(law)
     if _seen(law, "restitution").max() < LOSS or _seen(law, "force").max() <= 0:
-        return  # the other laws cannot fit a pair that sticks or forces that are only tensile
+        return  # the other laws can fit neither a sticking pair nor purely tensile forces
     yield from _thornton_ning(law)
     yield _walton_braun(law)
     yield _luding(law)

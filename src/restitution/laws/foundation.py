@@ -33,7 +33,7 @@ Array = NDArray[np.float64]
 
 _SPRINGS = 400  # number of springs on each half of the line
 _DEPTHS = 200  # number of depths of loading at which the loads of the springs are tabulated
-# A contact counts as elastic if the residual indentation is a smaller fraction of the largest
+# A contact counts as elastic if the residual indentation is less than this fraction of the largest
 # indentation.
 _ELASTIC = 1e-3
 _POINTS = 400  # number of points of an unloading curve at which its slope is computed

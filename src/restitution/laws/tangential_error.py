@@ -39,7 +39,8 @@ from restitution.laws.time_integration import StoredForce
 # All differences found in the comparison are within the errors that these constants give. The top
 # of this file defines χ and β.
 #
-# Relative error of the stiffness for ν = 0: of every contact, and the error added if it is rough.
+# Relative error of the stiffness for ν = 0: the error of every contact, and the additional error of
+# a rough contact.
 _NUMERICAL, _ROUGH = 0.005, 0.04
 # The relative error of the stiffness due to the shape of the patches is _SHAPE χ for up to _ALIGNED
 # patches. It decreases with the number of patches up to _INDEPENDENT patches and not further,
@@ -59,9 +60,8 @@ _SHALLOWEST = 0.2
 class TangentialError:
     """Relative errors of the tangential law (dimensionless).
 
-    `stiffness` is the error of the tangential stiffness. `impulse` is an additional error of the
-    tangential impulse of a contact far from full slip. `sliding` is the error of the tangential
-    impulse in full slip.
+    `stiffness` is the error of the tangential stiffness. Far from full slip, the tangential impulse
+    has this error and the additional error `impulse`. In full slip it has the error `sliding`.
     """
 
     stiffness: float

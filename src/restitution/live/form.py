@@ -27,9 +27,9 @@ class Field:
 
     `unit` is the SI unit of the quantity. `low` and `high` are the ends of the slider in this unit;
     a field without them has no slider. If `when` is given, the field is shown only while the key
-    `when[0]` has one of the values `when[1:]` ("": the key is left out). `initial` is the value of
-    a field that appears for the first time. Fields with `more` are placed under "More", which is
-    open if one of them has a value.
+    `when[0]` has one of the values `when[1:]`, where "" stands for a missing key. `initial` is the
+    value of a field that appears for the first time. Fields with `more` are placed under "More",
+    which is open if one of them has a value.
     """
 
     key: str
@@ -56,7 +56,7 @@ class Group:
 
 
 def form() -> dict[str, Any]:
-    """Return the groups of fields, units with their factors, DEM codes and materials, for JSON."""
+    """Return as JSON data the groups of fields, the units, the DEM codes and the materials."""
     return {
         "groups": [asdict(group) for group in _groups()],
         "units": unit_factors(),

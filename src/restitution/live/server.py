@@ -80,7 +80,7 @@ class Server:
         )
 
     def stop(self) -> None:
-        """End the processes, and so all unfinished requests."""
+        """End the processes, and with them all unfinished requests."""
         for process in (self._live, self._runs, self._finer):
             process.stop()
 

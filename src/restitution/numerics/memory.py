@@ -27,8 +27,8 @@ def require(needed: float, what: str, remedy: str) -> None:
     """Raise `CaseError` if `what` needs more memory (`needed`, bytes) than is available."""
     if needed > (there := available()):
         raise CaseError(
-            f"{what} take about {in_words(needed)} of memory, but {in_words(there)} are available; "
-            f"{remedy}"
+            f"{what} take about {in_words(needed)} of memory, but only {in_words(there)} is "
+            f"available; {remedy}"
         )
 
 
@@ -77,7 +77,7 @@ def _limit(file: Path) -> float:
 def _of_address_space() -> float:
     """Memory (bytes) that the limit on the address space (`ulimit -v`) allows.
 
-    The limit also counts addresses that are reserved but hold no data, so these are subtracted.
+    The limit also counts reserved addresses that hold no data. These are subtracted from it.
     """
     try:
         import resource

@@ -1,4 +1,4 @@
-"""The figure of theories for the smooth bodies of a case."""
+"""The figure that compares theories for the smooth bodies of a case."""
 
 from __future__ import annotations
 

@@ -193,4 +193,4 @@ OBLIQUE_SPREAD_COLUMNS = {
 }
 UNLOADING_COLUMNS = ("max_indentation_m", "indentation_m", "force_N")
 STATUS = ("complete", "failed", "missing")  # possible states of a case in the table of a study
-LOCK = ".restitution-lock"  # name of the lock file, which the process that writes to a folder holds
+LOCK = ".restitution-lock"  # name of the lock file, held by the process that writes to a folder

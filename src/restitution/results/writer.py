@@ -340,7 +340,7 @@ def case_attributes(summary: Mapping[str, Any], text: str) -> dict[str, str]:
 
 
 def oblique_variables(rows: Sequence[Mapping[str, float]]) -> dict[str, Any]:
-    """Make the variables of `results.nc` for the `rows` of oblique impacts; none without rows.
+    """Make the variables of `results.nc` for the `rows` of oblique impacts, if there are any.
 
     The variables depend on the velocity and the angle of the impact. They are NaN for combinations
     of velocity and angle without an impact.

@@ -5,7 +5,7 @@ With COR f₁, f₂, f₃ on cells of size h, h/2, h/4 of the same surface,
     error of f₃ = max(1.5 |f₃ − f₂|, 0.5 |f₂ − f₁|),   observed order = log₂((f₂ − f₁)/(f₃ − f₂)).
 
 The COR of rough contacts oscillates with h more often than it follows a power of h. Richardson
-extrapolation (Roache 1994, J. Fluids Eng. 116, 405–413) would then mostly divide by random numbers.
+extrapolation (Roache 1994, J. Fluids Eng. 116, 405–413) would mostly divide by random numbers.
 Instead, convergence of first order is assumed. Each of the two differences then gives an error of
 f₃: |f₃ − f₂| and 0.5 |f₂ − f₁|. The first is multiplied by a safety factor of 1.5. The larger error
 is used; it exceeded the true error in 95 % of the cases of docs/resolution.md. On two grids the
@@ -141,7 +141,7 @@ def _levels(case: Case, folder: Path, grids: int) -> dict[int, float]:
     It is the approach to first touch on the grid with this factor minus that on the finest grid.
     """
     if grids < 2:
-        raise CaseError(f"grids: {grids} cannot show convergence; give 2 or more")
+        raise CaseError(f"grids: a study on {grids} grid cannot show convergence; give 2 or more")
     if case.realisations > 1:
         raise CaseError(
             "roughness.realisations: a convergence study uses one surface; remove this key"

@@ -65,8 +65,8 @@ def carried(surface: Surface, spacing: tuple[float, float], *, mirrored: bool = 
 
     Waves shorter than two cells along either axis are removed. The filter continues the surface
     beyond its edges. If `mirrored`, the surface is continued by its mirror image. Otherwise the
-    straight line between the ends of each line of heights is subtracted, and the remainder is
-    continued antisymmetrically.
+    straight line through the first and the last height of each row (or column) is subtracted, and
+    the remainder is continued antisymmetrically.
     """
     height = surface.height
     keep = _carried_mirrored if mirrored else _carried

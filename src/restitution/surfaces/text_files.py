@@ -20,7 +20,7 @@ from restitution.surfaces.scan import Y_DOWN, Scan, in_metres
 TEXT_SUFFIXES = frozenset({".txt", ".csv", ".dat", ".asc"})
 
 _LEAST_VALUES = 4  # smallest number of values of a scan line; shorter lines may be coordinates
-_LONGEST = 200  # largest length (characters) of a header value that is read as a number with unit
+_LONGEST = 200  # largest length (characters) of a header value that may be a number with a unit
 _NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?"
 _QUANTITY = re.compile(rf"(?P<number>{_NUMBER})\s*(?P<unit>\S+)")
 # Keys with which headers of other programs (SPIP, Nova, Gwyddion's XYZ) set units and scales.

@@ -67,8 +67,9 @@ from ._inputs import Array, PositiveFields, Values, positive, scalar_or_array, t
 from .hertz import Hertz
 from .kendall import Kendall
 
-# Total energy in units of U where the contact breaks (s = 1) and right after it has formed by a
-# jump (s³ = 4), at fixed indentation. The module docstring defines U and s.
+# Total energy, in units of U, at two points of a path at prescribed indentation: where the contact
+# breaks (s = 1), and right after it has formed by a jump (s³ = 4). The module docstring defines U
+# and s.
 _AT_BREAK = 16 / 5
 _AT_JUMP_IN = -24 / 5 * 4 * math.cbrt(4)
 

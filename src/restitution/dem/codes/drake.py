@@ -18,8 +18,8 @@ A geometry has only one k and one d. So in a scene with three types of bodies, t
 cannot all have their own k and d.
 
 In Drake 1.51, a continuous plant (`time_step=0`) reproduces the exported e. A discrete plant loses
-additional energy because of its time step. With its SAP approximation, a discrete plant ignores the
-dissipation, and e is close to 0.
+additional energy because of its time step. With its SAP approximation, a discrete plant ignores d
+and damps contacts strongly for numerical reasons, so that e is close to 0.
 """
 
 from __future__ import annotations

@@ -123,7 +123,8 @@ class PeriodicConvolution(Convolution):
         super().__init__(shape, shape, device)
         self._spectrum = _modes(symbol, shape, device)
         # The kernel at lag (0, 0) is the sum over all modes. A mode of the quadrant stands for two
-        # modes along an axis, unless its wave number is zero or the largest one of an even period.
+        # modes along an axis, unless its wave number along this axis is zero or, if the number of
+        # nodes is even, the Nyquist wave number.
         along = [1.0 + ((k > 0) & (2 * k != n)) for n in shape for k in [device.arange(n // 2 + 1)]]
         self.diagonal = float((along[1] @ self._spectrum) @ along[0])
         self._single_spectrum = self._spectrum.astype(np.float32)
