@@ -39,7 +39,7 @@ def test_deviations_may_be_left_out_and_std_comes_first(tmp_path):
         ("velocity,restitution\n1,0.5\n", 'this file has "velocity", "restitution"'),
         ("velocity_m_per_s;restitution\n1;0.5\n", "separated by commas"),
         ("velocity_m_per_s,e\n1,0.5\n", "the column restitution (e, 0 to 1) is missing"),
-        ("restitution,velocity_m_per_s,restitution\n1,1,1\n", "two columns restitution"),
+        ("restitution,velocity_m_per_s,restitution\n1,1,1\n", "more than one column restitution"),
         (HEAD, "has no rows"),
         (HEAD + "0.1 m/s,0.5,0.1\n", "in m/s, without the unit"),
         (HEAD + "0.1,0.5,0.1\n-1,0.5,0.1\n", 'line 3: velocity_m_per_s = "-1" is not a velocity'),

@@ -142,7 +142,7 @@ def test_a_scan_is_refined_on_its_own_pixels(case_text, tmp_path):
 
 def test_what_cannot_converge_is_refused(case_text, tmp_path):
     for text, grids, words in (
-        (case_text, 1, "grids: 1"),
+        (case_text, 1, "grids: a study on 1 grid cannot"),
         (case_text.replace("seed = 1", "seed = 1\nrealisations = 2"), 2, "study uses one surface"),
         (case_text.replace("[72, 64]", "[8000, 8000]"), 3, "at most 134217728 are allowed"),
     ):

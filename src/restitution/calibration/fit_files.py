@@ -133,7 +133,7 @@ def _parameter(found: Fit, k: int) -> dict[str, Any]:
 
 
 def _known(value: float) -> float | None:
-    """Return `value`, a standard deviation of a logarithm, or None if it is at least ln 10⁶."""
+    """Return `value` (a deviation of a logarithm), or None if it is unknown (≥ ln 10⁶)."""
     return float(value) if value < math.log(1e6) else None
 
 

@@ -245,10 +245,10 @@ def balances_are_reliable(state: State) -> bool:
 def balance_of(state: State) -> tuple[float, float]:
     """Return the balance of the contact area of a loaded `state`: indentation (m) and force (N).
 
-    At the balance, the energy release rate equals the work of adhesion. The function solves once
-    more with the same contact area, at an indentation that is smaller by a fraction of the pull-off
-    displacement of a flat punch with this area. If no balance exists, it returns the values of
-    `state`.
+    At the balance, the energy release rate equals the work of adhesion. To find it, the contact is
+    solved once more with the same contact area, at a smaller indentation. The difference is a
+    fraction of the pull-off displacement of a flat punch with this area. If no balance exists, the
+    values of `state` are returned.
     """
     contact = state.contact
     if state.contact_nodes == 0:

@@ -309,9 +309,9 @@ def is_unique(state: CohesiveState) -> bool:
     The equilibrium is unique if the spectral radius of the matrix K diag(max(−φ″, 0)) is below 1.
     K is the operator from pressure to elastic displacement, and φ the interaction energy per area
     as a function of the gap. An upper bound of the spectral radius is the largest row sum of the
-    matrix. In a periodic contact the row sums of K vanish. The upper bound is then the compliance
-    λ/(πE*) of the longest wave (wavelength λ), times the largest −φ″ of all gaps that are not
-    smaller than the present smallest gap.
+    matrix. In a periodic contact the row sums of K vanish and give no bound. There the bound is the
+    compliance λ/(πE*) of the longest wave (wavelength λ), times the largest −φ″ of all gaps that
+    are not smaller than the present smallest gap.
     """
     contact = state.contact
     if contact.periodic:

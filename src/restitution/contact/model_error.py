@@ -37,7 +37,7 @@ _CONSTANT = {
     ),
 }
 # For `expanding-cavity`: values of the steepness ψ of the asperities, and the largest relative
-# difference of COR from finite elements at each of these values.
+# difference between COR and finite element results at each of these values.
 _STEEPNESS, _GROWING = (0.0, 4.0, 6.0), (0.03, 0.035, 0.045)
 # Values of the COR due to plasticity alone, and a factor for each of them. The largest difference
 # (`_GROWING`) is multiplied by this factor.

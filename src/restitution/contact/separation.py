@@ -36,7 +36,7 @@ _STEPS_OF_RECOVERY = 8  # smallest number of steps into which the elastic recove
 # is divided.
 _STEPS_OF_TENSION = {"crack-closure": 32, "pohrt-popov": 16}
 _FINEST = 400  # the shortest step is the pull-off displacement of this punch divided by _FINEST
-_REFINEMENTS = (1, 2, 4)  # factors of the number of steps, tried in turn until the tolerance is met
+_REFINEMENTS = (1, 2, 4)  # multiply the number of steps in turn until the tolerance is met
 
 # If the error due to the steps is below this fraction of the surface energy (work of adhesion times
 # contact area), the error due to the grid is larger (see the module `collision`). Finer steps are

@@ -66,7 +66,7 @@ class UnloadingCurve:
         return replace(self, indentation=self.indentation[fewer], force=self.force[fewer])
 
     def largest_tension(self) -> float:
-        """Largest tension (N). The forces at balance scatter, so they are smoothed first."""
+        """Largest tension (N). Forces of balanced contacts are noisy and smoothed first."""
         F, largest = self.force, -float(self.force.min())
         if not self.balanced:
             return largest

@@ -27,7 +27,7 @@ _LOST = as_json(
     }
 )
 _CLOSED = as_json({"error": "the program has ended; start restitution app again", "lost": True})
-_AGAIN = "again"  # makes `ask` repeat a request whose process was ended because of another one
+_AGAIN = "again"  # makes `ask` repeat a request whose process was ended to stop another request
 _Lines = asyncio.Queue[str | None]
 
 

@@ -30,7 +30,7 @@ Progress = Callable[[Tally], None]
 
 @dataclass(frozen=True)
 class PairLaw:
-    """The law of one pair of particles, and its interpolation error of COR (0 if `computed`)."""
+    """The law of one pair of particles, and the error of COR by interpolation (0 if `computed`)."""
 
     law: Law
     computed: bool

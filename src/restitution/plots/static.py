@@ -81,7 +81,7 @@ def write_figure(path: Path, figure: Figure, file_format: Format = "png") -> Pat
     with warnings.catch_warnings(), matplotlib.rc_context({"svg.hashsalt": path.name}):
         matplotlib.rcParams["pdf.fonttype"] = 42  # embed TrueType fonts, as journals require
 
-        # If the font lacks the script of a title, matplotlib draws boxes and warns.
+        # If the font lacks characters of a title, matplotlib draws boxes and warns.
         warnings.filterwarnings("ignore", message="Glyph .* missing from font")
         replace_file(
             to_write,

@@ -36,7 +36,7 @@ def settled(case: Case, folder: Path, warn: Say = ignore) -> Case:
     if case.grid.refine != "auto":
         return case
     depths = case.depths()
-    factors: list[int] = []  # factors found so far: those of the deepest depths
+    factors: list[int] = []  # factors found so far: those of the largest depths
     finest, why, nodes = 1, "", (1, 1)
     for factor in FACTORS:
         if factor > 1 and factor**2 * nodes[0] * nodes[1] > MOST_NODES:

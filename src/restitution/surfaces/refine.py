@@ -42,10 +42,11 @@ def refine(surface: Surface, factor: int) -> Surface:
 def coarsen(surface: Surface, factor: int = 2) -> Surface:
     """Resample `surface` to cells `factor` times as large.
 
-    Waves no longer than two new cells are removed; longer waves do not change.
+    Waves of at most two new cells are removed; longer waves are unchanged.
 
-    If the number of nodes is not a multiple of `factor`, the new cells are slightly smaller, so
-    that a whole number of cells covers the domain. Raises `SurfaceError` for a factor below 1.
+    If the number of nodes is not a multiple of `factor`, the new cells are slightly smaller than
+    this, so that a whole number of cells covers the domain. Raises `SurfaceError` for a factor
+    below 1.
     """
     if factor < 1:
         raise SurfaceError(f"factor: {factor} is not a positive integer")

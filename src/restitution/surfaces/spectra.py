@@ -62,7 +62,7 @@ class Autocorrelated:
         if self.lay != 0 and self.correlation_length[0] == self.correlation_length[1]:
             raise SurfaceError(
                 "lay: a surface with one correlation length has no lay; give two "
-                "lengths, along the lay and across it, or leave lay out"
+                "lengths, along the lay and across it, or remove the key lay"
             )
         _check_shortest(self.shortest, grid)
 

@@ -86,9 +86,9 @@ def _decode(path: Path) -> str:
 def _parse_rows(path: Path, data: list[tuple[int, str]], *, plain: bool) -> list[list[float]]:
     """Parse all lines. Raise `SurfaceError` for damaged lines.
 
-    Text between scan lines is a damaged line, because other readers would silently skip it. Text
-    above the scan lines raises `NotAMatrixError`, unless the comments show that the file is a
-    matrix (`plain`); then it is a damaged line, too.
+    Text between scan lines counts as damage; other readers would silently skip it. Text above the
+    scan lines raises `NotAMatrixError`, unless the comments show that the file is a matrix
+    (`plain`). In this case it counts as damage, too.
     """
     rows: list[list[float]] = []  # a line of text becomes an empty row
     first: NotAMatrixError | None = None

@@ -179,7 +179,7 @@ _current: ContextVar[Device] = ContextVar("device", default=CPU)
 
 
 def current() -> Device:
-    """Return the device on which solves run in the current context."""
+    """Return the device on which contacts are solved in the current context."""
     return _current.get()
 
 

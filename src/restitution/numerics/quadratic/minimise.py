@@ -65,9 +65,9 @@ class Operator(Protocol):
 class BoundedQuadratic:
     """The problem: minimise ½ pᵀK p − pᵀb with lower ≤ p ≤ upper.
 
-    `K` computes in double precision. `b` has shape (nx, ny), and a bound is a number or an array of
-    this shape. `K_single` is K in single precision, for the products of K with steps. If `K_single`
-    is None, these products are computed with K.
+    `K` is applied in double precision. `b` has shape (nx, ny), and a bound is a number or an array
+    of this shape. `K_single` is K in single precision; it is applied to the steps of the minimiser.
+    If `K_single` is None, K is applied instead.
     """
 
     K: Operator
