@@ -72,9 +72,9 @@ def generated_bytes(grid: Grid, *, normal: bool, periodic: bool) -> float:
 
 
 def measured_bytes(grid: Grid, scan: Grid, *, twin: bool) -> float:
-    """Memory (bytes) for placing a scan on `grid`; `scan` is the grid of its pixels.
+    """Memory (bytes) for placing a scan on `grid`, or for making its `twin`.
 
-    If `twin` is true, a twin of the scan is made instead.
+    `scan` is the grid of the pixels of the scan.
     """
     size = _PROCESS + _SURFACE * nodes_of(grid) + _SCAN * nodes_of(scan)
     return size + _BAND * _band_nodes(grid, scan) if twin else size

@@ -47,7 +47,7 @@ and their range).
 c₂ is above 3 because it also accounts for pile-up around a deep contact, which the model does not
 resolve. The bound reaches c₂ Y at the largest indentation of the finite element results. If the
 material hardens with a tangent modulus, Y is replaced by the flow stress at the representative
-strain 0.2 a/R (Tabor 1951), with a/R = π m/(2E*).
+strain 0.2 a/R (Tabor 1951) minus its value at first yield, with a/R = π m/(2E*).
 """
 
 from __future__ import annotations

@@ -23,8 +23,8 @@ _SMOOTHED = 11  # number of points to which each parabola that smooths the force
 # A change of the force between two points is a jump if it exceeds this fraction of the largest
 # tension.
 _JUMP = 0.1
-# Between the last balance and separation, the indentation decreases by at least this fraction of
-# its decrease from the beginning of unloading to the last balance.
+# The indentation at separation is smaller than at the last balance of a contact area, by at least
+# this fraction of the decrease from the beginning of unloading to that balance.
 _END = 1e-3
 # Two forces at one indentation count as equal if their difference is at most this fraction of the
 # largest tension or of the force, whichever is larger. Balances scatter by about this fraction.

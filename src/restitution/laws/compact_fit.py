@@ -26,7 +26,7 @@ _HIGHEST_DEGREE = 8
 _FEWEST = 4  # smallest number of points for a fit
 _NO_LOSS = 1e-3  # a point counts as lossless if 1 − e² is below this value
 _SIMPLER = 1.1  # a lower degree is preferred if its error is at most 1.1 times the smallest error
-_GOOD = 1e-3  # a lower degree is always preferred if the error of its e is below this value
+_GOOD = 1e-3  # a lower degree is always preferred if its error in e is below this value
 _COUNTS = 0.01  # at the velocity `adhesive_below`, adhesion lowers e² by this value
 
 

@@ -137,7 +137,7 @@ def _read(out: Path) -> RunResults:
 
 
 def _error_includes(diagnostics: Mapping[str, object]) -> str:
-    """Describe which parts of the error the field `error` of a point includes and excludes."""
+    """Describe what the `error` of a point covers: the parts that it includes and excludes."""
     includes = diagnostics.get("total_error_includes") or "solver"
     excludes = diagnostics.get("total_error_does_not_include") or "anything else"
     model = diagnostics.get("largest_model_error")

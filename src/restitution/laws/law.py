@@ -22,8 +22,8 @@ Array = NDArray[np.float64]
 
 LOSS = 1e-3
 """A law is not fitted if e, or 1 − e, is below this value at every velocity."""
-# Largest relative difference of velocities that count as equal. With integrated loading work, a run
-# matches the velocities of its case only to within 1e-4 (`solve_at_velocity`).
+# Largest relative difference of velocities that count as equal. If the loading work is integrated,
+# a run matches the velocities of its case only to within 1e-4 (`solve_at_velocity`).
 _SAME = 1.01e-4
 
 

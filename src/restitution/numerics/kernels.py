@@ -7,8 +7,8 @@ The loops form the module `restitution.numerics.loops`. If this module was not c
 loaded, the NumPy expressions are used, which are several times slower.
 
 The environment variable RESTITUTION_KERNELS is read once. The values "avx512", "avx2" and "plain"
-select the kernels for this instruction set; "numpy" selects the NumPy expressions. By default, the
-kernels with the widest vectors that the processor supports are used.
+select the kernels compiled for that instruction set; "numpy" selects the NumPy expressions. By
+default, the kernels with the widest vectors that the processor supports are used.
 """
 
 from __future__ import annotations

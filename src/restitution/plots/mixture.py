@@ -11,9 +11,9 @@ from restitution.plots.figure import GREY, PALETTE, Figure, Line
 
 
 def mixture_figure(title: str, laws: Sequence[Law]) -> Figure:
-    """Plot the COR of all pairs, with a chart for every pair of materials.
+    """Plot the COR: a chart for every pair of materials, with a line for every pair of sizes.
 
-    Lines are labelled with the reduced radius R*. In a chart of more than five pairs, at most five
+    Lines are labelled with the reduced radius R*. In a chart of more than five lines, at most five
     lines have labels.
     """
     charts = []

@@ -183,7 +183,7 @@ def _with_modulus_of(pair: Pair, other: Pair) -> Pair:
 
 
 def _yielding(case: Case) -> Yielding:
-    """Yield model of `case`; the default model if the softer body lacks the required strength."""
+    """Yield model of `case`; the default model if no strength is known for the softer body."""
     try:
         return case.yielding()
     except CaseError:

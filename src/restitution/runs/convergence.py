@@ -180,7 +180,7 @@ def _write_results(
 ) -> dict[str, Any]:
     """Write the finest curve, the table of all grids and the summary; return the summary."""
     depths = _by_depth(case, runs)
-    reached = [rows for rows in depths if max(runs) in rows]  # by the finest grid
+    reached = [rows for rows in depths if max(runs) in rows]  # depths that the finest grid reached
     finest = [rows[max(runs)] for rows in reached]
     lacking = _with_grid_errors(case, folder, finest) if case.total_error else 0
     order = observed_order(depths)
