@@ -152,7 +152,9 @@ class Edge:
     @classmethod
     def of(cls, p: Array, u: Array, h: Array, touching: Mask) -> Edge:
         """Find the edge from pressure p, displacement u and the gap h before displacement."""
-        T = np.pad(touching, 1)
+        # `np.pad` would take 25 times as long on small contacts.
+        T = np.zeros((touching.shape[0] + 2, touching.shape[1] + 2), dtype=bool)
+        T[1:-1, 1:-1] = touching
         surrounded = T[:-2, 1:-1] & T[2:, 1:-1] & T[1:-1, :-2] & T[1:-1, 2:]
         i, j = np.nonzero(touching & ~surrounded)
         side, node = np.nonzero(~T[i + 1 + _FACES[:, :1], j + 1 + _FACES[:, 1:]])

@@ -78,9 +78,7 @@ def run_convergence(
     log, runs = RunLog(progress, warn), _Runs()
     unsettled: list[str] = []
 
-    with log.record(
-        out, lambda: _write_results(case, folder, out, runs, log, unsettled) if runs else {}
-    ):
+    with log.record(out, lambda: _write_results(case, out, runs, log, unsettled) if runs else {}):
         case = settled(case, folder, log.warn)
         case = case.refined(max(case.factors()))
         if case.interface.adhesive_energy and case.interface.adhesion is None:
@@ -117,9 +115,10 @@ def _add_errors(
     runs: _Runs,
     progress: Say,
 ) -> None:
-    """Add errors due to surface, materials and unseen yielding to the rows of the finest grid.
+    """Add to the rows of the finest grid what `_with_grid_errors` needs, and two errors.
 
-    The errors due to surface and materials are computed on the coarsest grid.
+    The errors are those due to surface and materials, computed on the coarsest grid. `unseen_yield`
+    and `octaves` (of `Band`) describe the finest grid.
     """
     coarsest, finest = case.refined(min(runs)), runs[max(runs)][1]
     alone = [dict(row) for row in finest]
@@ -128,11 +127,12 @@ def _add_errors(
         row.update({name: errors[name] for name in ("surface_scatter", "material_error")})
     if not (reached := [row for row in finest if row["loading_work_J"] > 0]):
         return
+    progress("error: yielding on a finer grid")
     fine = case.refined(max(runs))
+    waves = Band.of(fine.surface(folder))
     companions = Companions(fine, folder, sorted(row["max_indentation_m"] for row in reached))
-    unseen = unseen_yield(companions, Band.of(fine.surface(folder)), reached)
-    for row, error in zip(reached, unseen, strict=True):
-        row["unseen_yield"] = float(error)
+    for row, error in zip(reached, unseen_yield(companions, waves, reached), strict=True):
+        row.update(unseen_yield=float(error), octaves=waves.octaves)
 
 
 def _levels(case: Case, folder: Path, grids: int) -> dict[int, float]:
@@ -172,7 +172,6 @@ def _pressed_less(case: Case, later: float) -> Case:
 
 def _write_results(
     case: Case,
-    folder: Path,
     out: ResultsFolder,
     runs: _Runs,
     log: RunLog,
@@ -182,7 +181,7 @@ def _write_results(
     depths = _by_depth(case, runs)
     reached = [rows for rows in depths if max(runs) in rows]  # depths that the finest grid reached
     finest = [rows[max(runs)] for rows in reached]
-    lacking = _with_grid_errors(case, folder, finest) if case.total_error else 0
+    lacking = _with_grid_errors(finest) if case.total_error else 0
     order = observed_order(depths)
     out.put_curve([{key: row[key] for key in COLUMNS} for row in finest])
     write_table(
@@ -238,7 +237,7 @@ def _write_results(
     return summary
 
 
-def _with_grid_errors(case: Case, folder: Path, rows: list[Row]) -> int:
+def _with_grid_errors(rows: list[Row]) -> int:
     """Add three parts to the discretisation error of `rows`, the rows of the finest grid.
 
     The first part is a minimum error, because differences of COR between grids may vanish by
@@ -247,13 +246,16 @@ def _with_grid_errors(case: Case, folder: Path, rows: list[Row]) -> int:
     interrupted before `_add_errors`, the rows get no parts and no total. Returns the number of rows
     that are unresolved because of the waves.
     """
-    octaves = Band.of(case.refined(int(max(row["refine"] for row in rows))).surface(folder)).octaves
     lacking = 0
     for row in rows:
         if math.isnan(row["discretisation_error"]) or "unseen_yield" not in row:
             continue
         row["discretisation_error"], band = widened_error(
-            row["discretisation_error"], row["last_change"], row["unseen_yield"], row, octaves
+            row["discretisation_error"],
+            row["last_change"],
+            row["unseen_yield"],
+            row,
+            row["octaves"],
         )
         if band > MISSING_BAND:
             row["resolved"], lacking = False, lacking + 1

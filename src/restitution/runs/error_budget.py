@@ -25,7 +25,7 @@ patch of the median contact node (docs/resolution.md). s is the fraction of f th
 large if the grid does not resolve the contact. Otherwise s is small; it only keeps the error from
 vanishing by chance.
 
-The constants of these formulas were chosen on about 400 random cases, 45 of them adhesive, and
+The constants of these formulas were chosen on about 400 random cases, 30 of them adhesive, and
 checked on other cases (docs/error.md).
 """
 

@@ -55,14 +55,17 @@ def settled(case: Case, folder: Path, warn: Say = ignore) -> Case:
         if first == 0:
             break
     if unresolved := len(depths) - len(factors):
-        unit, scale = ("nm", 1e9) if case.indentation else ("N", 1) if case.load else ("m/s", 1)
+        if case.indentation:
+            quantity, unit, scale = "indentation", "nm", 1e9
+        else:
+            quantity, unit, scale = ("load", "N", 1.0) if case.load else ("velocity", "m/s", 1.0)
         first_depth, last_depth = (f"{scale * depths[k]:.4g}" for k in (0, unresolved - 1))
         where = f"at {first_depth}" if unresolved == 1 else f"from {first_depth} to {last_depth}"
         warn(
             f'grid.refine = "auto" stopped at {finest} ({why}). This grid does not resolve the '
             f"contact {where} {unit}: half of the contact is in patches of fewer than "
-            f"{_MARGIN * NODES_PER_PATCH:.0f} nodes; begin with a larger value, or leave out short "
-            "waves (roughness.shortest)"
+            f"{_MARGIN * NODES_PER_PATCH:.0f} nodes; begin with a larger {quantity}, or leave out "
+            "short waves (roughness.shortest)"
         )
     found = [finest] * unresolved + factors
     return case.refined(found[0] if len(set(found)) == 1 else tuple(found))
