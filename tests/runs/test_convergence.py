@@ -178,3 +178,17 @@ def test_converge_adds_the_yielding_that_no_grid_shows(case_text, tmp_path, monk
     known = np.isfinite(without)
     assert known.any()
     assert study("with", 0.05)[known] == approx(np.hypot(without[known], 0.05), rel=1e-9)
+
+
+def test_a_row_with_an_unknown_scatter_has_no_total(case_text, tmp_path, monkeypatch):
+    real = convergence.spread_errors
+
+    def unknown(companions, work, *more):
+        found = real(companions, work, *more)
+        found["surface_scatter"][0] = math.nan
+        return found
+
+    monkeypatch.setattr(convergence, "spread_errors", unknown)
+    out, _ = converge(case_text, tmp_path, 2)
+    known = [math.isfinite(row["total_error"]) for row in out.rows]
+    assert known == [False, *[True] * (len(known) - 1)]

@@ -71,7 +71,8 @@ def test_a_run_stores_the_states_of_its_pressures(tmp_path):
     assert data["mean_gap"].attrs["units"] == "m"
     summary = json.loads((tmp_path / "out" / "summary.json").read_text())
     assert summary == results.summary
-    assert summary["status"] == "complete"
+    assert summary["status"] == data.attrs["status"] == "complete"
+    assert data.attrs["warnings"].splitlines() == summary["warnings"]
     assert summary["derived"]["reduced_pressure_Pa"] == approx(
         contact.pair.contact_modulus * contact.slope
     )

@@ -39,7 +39,7 @@ from restitution.runs.error_budget import (
     MISSING_BAND,
     Band,
     Row,
-    add_errors,
+    spread_errors,
     total_error_summary,
     unseen_yield,
     widened_error,
@@ -115,24 +115,26 @@ def _add_errors(
     runs: _Runs,
     progress: Say,
 ) -> None:
-    """Add to the rows of the finest grid what `_with_grid_errors` needs, and two errors.
+    """Add to the rows of the finest grid what `_with_grid_errors` needs.
 
-    The errors are those due to surface and materials, computed on the coarsest grid. `unseen_yield`
-    and `octaves` (of `Band`) describe the finest grid.
+    These are the errors due to surface and materials (`errors_known` says whether all of them could
+    be computed), `unseen_yield` and `octaves` (of `Band`). A row whose loading work is not positive
+    gets none of them.
     """
-    coarsest, finest = case.refined(min(runs)), runs[max(runs)][1]
-    alone = [dict(row) for row in finest]
-    add_errors(coarsest, folder, coarsest.surface(folder), alone, progress)
-    for row, errors in zip(finest, alone, strict=True):
-        row.update({name: errors[name] for name in ("surface_scatter", "material_error")})
-    if not (reached := [row for row in finest if row["loading_work_J"] > 0]):
+    reached = [row for row in runs[max(runs)][1] if row["loading_work_J"] > 0]
+    if not reached:
         return
-    progress("error: yielding on a finer grid")
     fine = case.refined(max(runs))
     waves = Band.of(fine.surface(folder))
     companions = Companions(fine, folder, sorted(row["max_indentation_m"] for row in reached))
-    for row, error in zip(reached, unseen_yield(companions, waves, reached), strict=True):
-        row.update(unseen_yield=float(error), octaves=waves.octaves)
+    progress("error: yielding on a finer grid")
+    unseen = unseen_yield(companions, waves, reached)
+    work = np.array([row["loading_work_J"] for row in reached])
+    errors = spread_errors(companions, work, progress)
+    for k, row in enumerate(reached):
+        found = {name: float(values[k]) for name, values in errors.items()}
+        known = all(math.isfinite(error) for error in found.values())
+        row.update(found, errors_known=known, unseen_yield=float(unseen[k]), octaves=waves.octaves)
 
 
 def _levels(case: Case, folder: Path, grids: int) -> dict[int, float]:
@@ -243,8 +245,8 @@ def _with_grid_errors(rows: list[Row]) -> int:
     The first part is a minimum error, because differences of COR between grids may vanish by
     chance. The second part is the effect of the waves that the finest grid leaves out of a scan.
     The third part is the effect of nodes that would yield only on a finer grid. If the study was
-    interrupted before `_add_errors`, the rows get no parts and no total. Returns the number of rows
-    that are unresolved because of the waves.
+    interrupted before `_add_errors`, the rows get no parts and no total. A row with an unknown
+    error gets no total. Returns the number of rows that are unresolved because of the waves.
     """
     lacking = 0
     for row in rows:
@@ -259,7 +261,8 @@ def _with_grid_errors(rows: list[Row]) -> int:
         )
         if band > MISSING_BAND:
             row["resolved"], lacking = False, lacking + 1
-        row["total_error"] = total(row)
+        if row["errors_known"] and math.isfinite(row["discretisation_error"]):
+            row["total_error"] = total(row)
     return lacking
 
 

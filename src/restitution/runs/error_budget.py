@@ -161,6 +161,26 @@ def scatter(restitution: Array, work: Array) -> Array:
     return np.asarray(_SCATTER * np.sqrt(_smoothed(variance, work, _NEAR_SURFACE)))
 
 
+def spread_errors(
+    companions: Companions, work: Array, progress: Say = ignore, *, scattered: bool = True
+) -> dict[str, Array]:
+    """Errors of COR at `work` (J) due to the scatter between surfaces and to library materials.
+
+    The keys are `surface_scatter` and `material_error`. A key is absent if the case of `companions`
+    has no roughness or no library values. If `scattered` is false, `surface_scatter` is absent.
+    """
+    case = companions.case
+    columns = {}
+    if case.roughness and scattered:
+        others = [curve.at(work) for curve in companions.others(progress)]
+        columns["surface_scatter"] = scatter(np.array([companions.own.at(work), *others]), work)
+    if case.has_library_values():
+        progress("error: materials")
+        changes = companions.materials(work)
+        columns["material_error"] = np.sqrt(sum((c**2 for c in changes), np.zeros(work.size)))
+    return columns
+
+
 def add_errors(
     case: Case,
     folder: Path,
@@ -204,17 +224,11 @@ def _add_errors(
     companions = Companions(case, folder, sorted(row["max_indentation_m"] for row in reached))
     waves = Band.of(surface)
     progress("error: cells twice as large")
-    own = companions.own.at(work)
+    change = restitution - companions.own.at(work)
     unseen = unseen_yield(companions, waves, reached)
-    errors, band = grid_error(restitution - own, unseen, work, reached, waves.octaves)
+    errors, band = grid_error(change, unseen, work, reached, waves.octaves)
     columns = {"discretisation_error": errors}
-    if case.roughness and scattered:
-        others = [curve.at(work) for curve in companions.others(progress)]
-        columns["surface_scatter"] = scatter(np.array([own, *others]), work)
-    if case.has_library_values():
-        progress("error: materials")
-        changes = companions.materials(work)
-        columns["material_error"] = np.sqrt(sum((c**2 for c in changes), np.zeros(work.size)))
+    columns |= spread_errors(companions, work, progress, scattered=scattered)
     for k, row in enumerate(reached):
         row.update({name: float(values[k]) for name, values in columns.items()})
         row["resolved"] = bool(row["resolved"]) and not band[k] > MISSING_BAND

@@ -17,7 +17,13 @@ from restitution.numerics.kernels import instruction_set
 from restitution.results.interruption import hold_signals
 from restitution.results.periodic import periodic_dataset, periodic_row
 from restitution.results.schema import PERIODIC_FILE
-from restitution.results.writer import ResultsFolder, case_attributes, versions, write_table
+from restitution.results.writer import (
+    ResultsFolder,
+    case_attributes,
+    status_attributes,
+    versions,
+    write_table,
+)
 from restitution.runs.depths import load_to
 from restitution.runs.log import RunLog, Say, ignore
 from restitution.runs.messages import input_warnings, message, require_possible
@@ -109,6 +115,6 @@ def _write_results(
         "versions": versions(),
     }
     dataset = periodic_dataset(rows, deepest)
-    dataset.attrs = {"title": case.title, "status": log.status, **case_attributes(summary, text)}
+    dataset.attrs = status_attributes(summary) | case_attributes(summary, text)
     out.write(dataset, summary)
     return summary
