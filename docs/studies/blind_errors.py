@@ -11,6 +11,11 @@ been used before.
     python docs/studies/blind_errors.py --topographies ../shared/topographies
 
 writes blind_errors.csv beside this file, a row for each COR. `--summary` reads it again.
+
+    python docs/studies/blind_errors.py --grids 3 --first 6000 --skip-adhesive
+
+checks the errors of `restitution converge` on three grids instead. The reference is then computed
+on cells half as large as those of the finest grid. The table is blind_convergence.csv.
 """
 
 from __future__ import annotations
@@ -28,8 +33,11 @@ from pathlib import Path
 import numpy as np
 
 TABLE = Path(__file__).with_suffix(".csv")
-FINER = 4
-SURFACES, ADHESIVE_SURFACES = 10, 4  # number of surfaces of the reference
+CONVERGENCE_TABLE = Path(__file__).with_name("blind_convergence.csv")
+# How many times smaller the cells of the reference are: for `run`, and for `converge` compared with
+# its finest grid.
+FINER, FINER_THAN_FINEST = 4, 2
+SURFACES, ADHESIVE_SURFACES = 24, 6  # number of surfaces of the reference
 SCANS = (
     # file, edge in um, detrend, what the file does not say
     ("di-3.di", 10, "tilt", ""),
@@ -132,23 +140,27 @@ def _generated(
     return rough
 
 
-def examine(task: tuple[int, Path]) -> list[dict[str, object]]:
+def examine(task: tuple[int, Path, int]) -> list[dict[str, object]]:
     """Make the rows of one case: the stated errors, and the reference."""
     from restitution.case.case_file import parse_case
     from restitution.errors import RestitutionError
     from restitution.results.writer import ResultsFolder
+    from restitution.runs.convergence import run_convergence
     from restitution.runs.run import run_case
 
-    seed, scans = task
+    seed, scans, grids = task
     kind, text = draw(seed, scans)
     try:
         case = parse_case(text)
         with tempfile.TemporaryDirectory() as folder:
             out = ResultsFolder(Path(folder) / "out")
             with contextlib.suppress(RestitutionError):  # depths that were computed before count
-                run_case(case, text, Path(), out)
+                if grids > 1:
+                    run_convergence(case, text, Path(), out, grids)
+                else:
+                    run_case(case, text, Path(), out)
             rows = [row for row in out.rows if not math.isnan(row["total_error"])]
-        means, errors = _reference(case, rows, seed) if rows else ([], [])
+        means, errors = _reference(case, rows, seed, grids) if rows else ([], [])
     except RestitutionError as error:
         print(f"{seed} {kind}: {error}", flush=True)
         return []
@@ -174,7 +186,7 @@ def examine(task: tuple[int, Path]) -> list[dict[str, object]]:
     return found
 
 
-def _reference(case, rows, seed):
+def _reference(case, rows, seed, grids):
     """Mean COR at the loading works of `rows` and its standard error."""
     from restitution.runs.companions import curve_of
 
@@ -187,7 +199,7 @@ def _reference(case, rows, seed):
     surfaces = (ADHESIVE_SURFACES if adhesive else SURFACES) if case.roughness else 1
     if case.has_library_values():
         surfaces = max(surfaces, ADHESIVE_SURFACES)
-    finer = case.refined(FINER)
+    finer = case.refined(FINER if grids == 1 else FINER_THAN_FINEST * 2 ** (grids - 1))
     found = []
     for number in range(surfaces):
         other = _with_drawn_materials(finer.variant(100 + number), rng)
@@ -274,14 +286,18 @@ def main() -> None:
     parser.add_argument(
         "--skip-adhesive", action="store_true", help="leave out every fourth case: minutes each"
     )
+    parser.add_argument(
+        "--grids", type=int, default=1, help="check `converge` on this number of grids"
+    )
     parser.add_argument("--processes", type=int, default=2)
-    parser.add_argument("--table", type=Path, default=TABLE)
+    parser.add_argument("--table", type=Path)
     parser.add_argument("--summary", action="store_true", help="only read the table again")
     options = parser.parse_args()
+    options.table = options.table or (CONVERGENCE_TABLE if options.grids > 1 else TABLE)
     if not options.summary:
         os.environ.setdefault("DUCC0_NUM_THREADS", "1")
         tasks = [
-            (seed, options.topographies.resolve())
+            (seed, options.topographies.resolve(), options.grids)
             for seed in range(options.first, options.first + options.cases)
             if not (options.skip_adhesive and seed % 4 == 0)
         ]

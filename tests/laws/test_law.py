@@ -85,7 +85,9 @@ def test_the_points_are_those_of_the_run(rough):
     assert law.warnings == tuple(summary["warnings"])
     said = law.conventions.model_dump()
     error = said.pop("restitution_error")
-    assert error.startswith("solver, grid, scatter of one surface among 8; not: the model")
+    assert error.startswith(
+        "solver, grid, difference of this surface from the mean of 8; not: the model"
+    )
     assert said == summary["conventions"]
 
 

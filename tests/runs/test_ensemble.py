@@ -1,6 +1,7 @@
 """Several surfaces of one case: mean, spread, confidence interval and failures."""
 
 import json
+import math
 
 import numpy as np
 import pytest
@@ -75,6 +76,13 @@ def test_a_surface_that_ends_early_leaves_the_others_and_one_has_no_spread():
     assert long["restitution"] == 0.6
     assert np.isnan([long["restitution_std"], long["restitution_low"]]).all()
     assert mean_rows([]) == []
+
+
+def test_a_mean_over_one_surface_has_no_total_error():
+    a, b, c = (row(e, total_error=math.nan) for e in (0.5, 0.51, 0.6))
+    several, alone = mean_rows([[a, c], [b]], [row(0.5), row(0.6)])
+    assert several["total_error"] >= several["surface_scatter"] > 0.05
+    assert np.isnan(alone["total_error"])
 
 
 def test_more_surfaces_narrow_the_interval():

@@ -86,7 +86,7 @@ COLUMNS = {
         optional=True,
     ),
     "surface_scatter": _magnitude(
-        "surface_scatter", "error of restitution due to scatter among surfaces", optional=True
+        "surface_scatter", "error of restitution due to scatter between surfaces", optional=True
     ),
     "material_error": _magnitude(
         "material_error", "error of restitution due to the spread of library values", optional=True

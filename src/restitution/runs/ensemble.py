@@ -22,7 +22,14 @@ from restitution.results.writer import (
     status_attributes,
     write_table,
 )
-from restitution.runs.error_budget import MISSING_BAND, Row, add_errors, total_error_summary
+from restitution.runs.error_budget import (
+    CONFIDENCE,
+    MISSING_BAND,
+    Row,
+    add_errors,
+    half_interval,
+    total_error_summary,
+)
 from restitution.runs.log import RunLog, Say, ignore
 from restitution.runs.messages import message
 from restitution.runs.oblique import mean_oblique
@@ -30,7 +37,6 @@ from restitution.runs.periodic import run_periodic
 from restitution.runs.refinement import settled
 from restitution.runs.run import run_case
 
-CONFIDENCE = 0.95
 # Columns of an ensemble's curve that are not means, and the functions that combine the values of
 # the surfaces. Flags are not listed: they are true if they are true for all surfaces.
 _WORST: dict[str, Callable[[list[float]], float]] = {
@@ -230,10 +236,9 @@ def mean_rows(curves: Sequence[Sequence[Row]], errors: Sequence[Row] = ()) -> li
     mean ± t s/√n with Student's t, clipped to [0, 1]. With one surface, s and the ends are NaN.
 
     `errors` are the rows of one surface with the errors due to grid and materials. These errors are
-    used for the means, too. `surface_scatter` is half of the width of the confidence interval.
+    used for the means, too. `surface_scatter` is half of the width of the confidence interval. A
+    depth that only one surface reached has no total.
     """
-    from scipy.stats import t
-
     rows = []
     for depth in range(max(map(len, curves), default=0)):
         of = [curve[depth] for curve in curves if len(curve) > depth]
@@ -244,7 +249,7 @@ def mean_rows(curves: Sequence[Sequence[Row]], errors: Sequence[Row] = ()) -> li
         restitution = [surface["restitution"] for surface in of]
         n = len(of)
         std = float(np.std(restitution, ddof=1)) if n > 1 else math.nan
-        half = float(t.ppf(0.5 * (1 + CONFIDENCE), n - 1)) * std / math.sqrt(n) if n > 1 else std
+        half = half_interval(n) * std
         row["realisations"] = n
         row["restitution_std"] = std
         row["restitution_low"] = max(row["restitution"] - half, 0.0)
@@ -254,6 +259,7 @@ def mean_rows(curves: Sequence[Sequence[Row]], errors: Sequence[Row] = ()) -> li
                 row[name] = errors[depth][name]
             row["resolved"] = bool(row["resolved"]) and bool(errors[depth]["resolved"])
             row["surface_scatter"] = half
-            row["total_error"] = total(row)
+            if n > 1:
+                row["total_error"] = total(row)
         rows.append(row)
     return rows

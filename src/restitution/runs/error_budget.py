@@ -62,9 +62,7 @@ _FEW_NODES, _SHARE_UNRESOLVED = (3, 7), (0.6, 0.1)
 # late and all at once, so its COR may have almost any error.
 _PATCH_NODES = (1, 3, 7, 14, 30, 100, 400)
 _PATCH_ERROR = (0.9, 0.4, 0.15, 0.08, 0.05, 0.024, 0.008)
-# Estimated error due to the surface, in standard deviations of COR between surfaces. With eight
-# surfaces, this estimate exceeds the true error in about 88 % of cases.
-_SCATTER = 1.5
+CONFIDENCE = 0.95  # of the interval of a mean COR over surfaces
 # Differences of COR between grids and between surfaces are smoothed over these lengths, in the
 # logarithm of the loading work, because single differences may vanish by chance.
 _NEAR_GRID, _NEAR_SURFACE = 2.0, 1.0
@@ -150,21 +148,38 @@ def widened_error(
 
 
 def scatter(restitution: Array, work: Array) -> Array:
-    """Scatter of COR between surfaces; NaN if fewer than two surfaces have a curve.
+    """Error of the COR of one surface as an estimate of the mean COR of all surfaces of its kind.
 
-    `restitution` has a row for each surface and a column for each value of `work` (J).
+    It is the difference of COR from its mean over the computed surfaces, plus half the width of the
+    95 % confidence interval of this mean.
+
+    `restitution` has a row for each surface, the surface of the run first, and a column for each
+    value of `work` (J). The errors are NaN if the curve of this surface or the curves of all others
+    are missing (NaN).
     """
     known = restitution[np.isfinite(restitution).all(axis=1)]
     if len(known) < 2:
         return np.full(work.size, math.nan)
-    variance = np.var(known, axis=0, ddof=1)
-    return np.asarray(_SCATTER * np.sqrt(_smoothed(variance, work, _NEAR_SURFACE)))
+    deviation = np.sqrt(_smoothed(np.var(known, axis=0, ddof=1), work, _NEAR_SURFACE))
+    half = half_interval(len(known)) * deviation
+    return np.asarray(np.abs(restitution[0] - known.mean(axis=0)) + half)
+
+
+def half_interval(surfaces: int) -> float:
+    """Half the width of the 95 % confidence interval of the mean COR of `surfaces` surfaces.
+
+    It is given in sample standard deviations of COR between the surfaces: t/√n with Student's t.
+    NaN for one surface.
+    """
+    from scipy.stats import t
+
+    return float(t.ppf(0.5 * (1 + CONFIDENCE), surfaces - 1)) / math.sqrt(surfaces)
 
 
 def spread_errors(
     companions: Companions, work: Array, progress: Say = ignore, *, scattered: bool = True
 ) -> dict[str, Array]:
-    """Errors of COR at `work` (J) due to the scatter between surfaces and to library materials.
+    """Errors of COR at `work` (J) due to the surface and to the spread of library materials.
 
     The keys are `surface_scatter` and `material_error`. A key is absent if the case of `companions`
     has no roughness or no library values. If `scattered` is false, `surface_scatter` is absent.
@@ -281,7 +296,7 @@ def included(case: Case) -> list[str]:
         words.append(
             f"95 % interval of the mean of {n} surfaces"
             if n > 1
-            else f"scatter of one surface among {SURFACES + 1}"
+            else f"difference of this surface from the mean of {SURFACES + 1}"
         )
     if case.has_library_values():
         words.append("spread of the library's materials")
