@@ -70,6 +70,16 @@ def surface(cli, case, tmp_path):
     return call
 
 
+def test_the_curvature_that_was_subtracted_is_printed(surface, scan, tmp_path):
+    x = 0.1e-6 * np.arange(96)
+    bowed = scan - np.add.outer((x - 5e-6) ** 2, (x - 5e-6) ** 2) / (2 * 80e-6)
+    np.save(tmp_path / "scan.npy", bowed)
+    found, printed = surface('detrend = "curvature"')
+    assert found["provenance"]["subtracted_radius_m"] == approx(80e-6, rel=0.1)
+    radius = f"{1e6 * found['provenance']['subtracted_radius_m']:.4g} µm"
+    assert f"a sphere with a radius of {radius}" in " ".join(printed.split())
+
+
 def test_a_part_of_a_scan(surface, scan):
     found, _ = surface('crop = { x = ["-2 um", "3.05 um"] }')
     assert found["provenance"]["cropped"] == "51 x 96 of 96 x 96 pixels"

@@ -53,6 +53,17 @@ def test_subtracts_no_more_than_asked():
         assert level(Surface(form, GRID), how).height.std() > 0.1 * form.std()
 
 
+@pytest.mark.parametrize("radius", [30e-6, -2e-3])
+def test_the_radius_of_the_subtracted_paraboloid_is_stored(radius):
+    form = -(X**2 + Y**2) / (2 * radius) + 0.03 * X
+    levelled = level(Surface(form, GRID), "curvature")
+    assert levelled.provenance["subtracted_radius_m"] == approx(radius, rel=1e-9)
+    assert "subtracted_radius_m" not in level(Surface(form, GRID), "tilt").provenance
+    two_columns = Grid((2, 32), GRID.spacing)
+    narrow = level(Surface(form[:2], two_columns), "curvature")
+    assert "subtracted_radius_m" not in narrow.provenance
+
+
 def test_none_changes_no_height():
     surface = Surface(ROUGH, GRID, {"source": "test"})
     assert level(surface, "none").height is ROUGH

@@ -114,6 +114,8 @@ def _table(case: Case, contact: Contact) -> Table:
         if key not in quantities or (key == "yield_strength_Pa" and quantities[key] is None):
             continue
         value = quantities[key]
+        if key == "deepest_indentation_m" and case.indentation is None:
+            label += ", estimated"
         table.add_row(label, "-" if value is None else f"{scale * value:.5g}", unit)
     needed = in_words(case.run_bytes(contact.grid))
     table.add_row("memory of a run, at most", needed, f"of {in_words(available())}{auto}")

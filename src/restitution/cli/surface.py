@@ -4,6 +4,7 @@ import typer
 from rich.table import Table
 
 from restitution.cli.parameters import CaseFile, FigureFormat, Figures, OutFolder
+from restitution.display import quantity
 
 
 def surface(
@@ -17,7 +18,7 @@ def surface(
 
     from restitution.case import needs
     from restitution.case.case_file import naming, read_case
-    from restitution.cli.console import answers, command, errors, say_next, say_written
+    from restitution.cli.console import answers, command, errors, say, say_next, say_written
     from restitution.pages.surface import write_surface_page
     from restitution.plots.static import write_figure
     from restitution.plots.surface import surface_map
@@ -55,5 +56,18 @@ def surface(
     for key, value in statistics.items():
         table.add_row(key, "-" if value is None else f"{value:.5g}")
     answers.print(table)
+    for key, radius in provenance.items():
+        if key.endswith("subtracted_radius_m"):
+            say(_curvature(str(provenance[key.replace("subtracted_radius_m", "file")]), radius))
     say_written(out, ["surface.nc", "statistics.json", picture.name, "surface.html"])
     say_next(command("run", case, "-o", "OUT"))
+
+
+def _curvature(file: str, radius: float) -> str:
+    """Say which curvature was subtracted from a scan; the user knows that of the particle."""
+    form = "hollow" if radius < 0 else "sphere"
+    return (
+        f"{file}: the subtracted paraboloid is as curved as a {form} with a radius of "
+        f"{quantity(abs(radius), 'm')}. If this is not the radius of the scanned particle, check "
+        "the units of the scan, or whether the instrument has flattened it."
+    )

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from restitution.display import quantity, summary_html, summary_text
 from restitution.errors import CaseError
+from restitution.theory import yield_coefficient
 
 
 @dataclass(frozen=True)
@@ -90,6 +91,16 @@ class Pair:
         return 1 / sum(
             (1 - body.poissons_ratio**2) / body.youngs_modulus for body in (self.first, self.second)
         )
+
+    @property
+    def yield_coefficient(self) -> float:
+        """`theory.yield_coefficient` at the mean Poisson's ratio of the bodies.
+
+        Smooth bodies first yield where the largest pressure is this number times the yield
+        strength.
+        """
+        nu = 0.5 * (self.first.poissons_ratio + self.second.poissons_ratio)
+        return float(yield_coefficient(nu))
 
     @property
     def tangential_modulus(self) -> float:

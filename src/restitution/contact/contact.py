@@ -26,7 +26,7 @@ from restitution.numerics.box import Box
 from restitution.numerics.grid import Grid
 from restitution.numerics.read_only import freeze
 from restitution.surfaces import Surface, rms_slope
-from restitution.theory import JKR, yield_coefficient
+from restitution.theory import JKR
 
 Plasticity = Literal["expanding-cavity", "equilibrium", "truncated"]
 Approach = Literal["equilibrium", "hertzian", "pull-increments"]
@@ -202,13 +202,10 @@ class Contact:
     def first_yield_pressure(self) -> float:
         """Largest pressure at which smooth bodies stay elastic (Pa); inf for elastic bodies.
 
-        It is the yield pressure or, for `expanding-cavity`, the yield strength times the
-        `theory.yield_coefficient` at the mean Poisson's ratio of the bodies.
+        It is the yield pressure or, for `expanding-cavity`, the yield strength times
+        `Pair.yield_coefficient`.
         """
-        if not self.grows:
-            return self.yield_pressure
-        nu = 0.5 * (self.pair.first.poissons_ratio + self.pair.second.poissons_ratio)
-        return float(yield_coefficient(nu)) * self.yield_strength
+        return min(self.yield_pressure, self.pair.yield_coefficient * self.yield_strength)
 
     @property
     def hardening_modulus(self) -> float:

@@ -22,7 +22,15 @@ from numpy.typing import NDArray
 
 from restitution.case.case import Case
 from restitution.errors import CaseError
-from restitution.theory import JKR, MDR, AdhesiveThorntonNing, Hertz, Johnson, ThorntonNing
+from restitution.theory import (
+    JKR,
+    MDR,
+    AdhesiveThorntonNing,
+    FirstYield,
+    Hertz,
+    Johnson,
+    ThorntonNing,
+)
 
 Array = NDArray[np.float64]
 
@@ -54,7 +62,8 @@ class Bodies:
     R: float
     E: float
     m: float
-    p_y: float  # contact pressure at yield; infinite for elastic bodies
+    p_y: float  # pressure of a fully plastic contact; infinite for elastic bodies
+    onset: float  # largest pressure of elastic smooth bodies; infinite for elastic bodies
     w: float
     wall: int | None  # which body is flat (0 or 1); None for two spheres
     equal: bool  # two identical spheres
@@ -74,7 +83,7 @@ class Bodies:
                     f'for example density = "2500 kg/m^3" in [{name}]'
                 )
         assert pair.mass is not None  # the loop above checked both densities
-        tables = tuple(case.bodies().values())
+        tables, yielding = tuple(case.bodies().values()), case.yielding()
         # A yield strength of the interface overrides those of the bodies.
         own = case.interface.yield_strength is None
         Y_1, Y_2 = (table.yield_strength if own else None for table in tables)
@@ -84,7 +93,8 @@ class Bodies:
             R=pair.radius,
             E=pair.contact_modulus,
             m=pair.mass,
-            p_y=case.yielding().hardness,
+            p_y=yielding.hardness,
+            onset=min(yielding.yield_pressure, pair.yield_coefficient * yielding.yield_strength),
             w=case.interface.adhesive_energy,
             wall=wall,
             equal=pair.first == pair.second and Y_1 == Y_2,
@@ -116,8 +126,10 @@ class Bodies:
 
     @cached_property
     def yield_velocity(self) -> float:
-        """Yield velocity V_y (m/s); infinite if elastic."""
-        return math.inf if self.elastic else float(self.yielding.first_yield.velocity(self.m))
+        """Yield velocity V_y (m/s), above which the bodies yield somewhere; infinite if elastic."""
+        if self.elastic:
+            return math.inf
+        return float(FirstYield(self.R, self.E, self.onset).velocity(self.m))
 
     @cached_property
     def sticking_velocity(self) -> float:
@@ -215,7 +227,7 @@ def _thornton_ning(b: Bodies, V: Array) -> Form | str:
     if b.w == 0:
         e = b.yielding.restitution(V, b.m)
         return Form(within(inside, e), f"quasi-static impacts, {small}", parameters)
-    V_s, V_y = b.sticking_velocity, b.yield_velocity
+    V_s, V_y = b.sticking_velocity, float(b.yielding.first_yield.velocity(b.m))
     additive = (
         "sum of the losses by adhesion and by yielding; e is an upper estimate, accurate for V_s "
         f"<< V_y (here V_s = {speed(V_s)}, V_y = {speed(V_y)})"

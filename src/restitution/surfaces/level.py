@@ -8,6 +8,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from restitution.errors import SurfaceError
+from restitution.numerics.grid import Grid
 from restitution.surfaces.surface import Array, Surface
 
 Levelling = Literal["none", "center", "tilt", "curvature"]
@@ -18,7 +19,8 @@ def level(surface: Surface, how: Levelling) -> Surface:
     """Subtract the mean, or the least-squares plane or paraboloid, from the heights.
 
     The paraboloid has the terms 1, x, y, x², xy and y². The provenance entry `levelling` lists
-    all methods applied so far, in order.
+    all methods applied so far, in order. `subtracted_radius_m` is the radius of the sphere with the
+    mean curvature of the paraboloid, negative for a hollow.
 
     Args:
         surface: Surface to level.
@@ -36,14 +38,23 @@ def level(surface: Surface, how: Levelling) -> Surface:
         )
     before = str(surface.provenance.get("levelling", "none"))
     done = [step for step in (before, how) if step != "none"]
+    provenance = {**surface.provenance, "levelling": ", ".join(done) or "none"}
     height = surface.height
     if how != "none":
-        height = height - _least_squares_form(height, _DEGREE[how])
-    return replace(
-        surface,
-        height=height,
-        provenance={**surface.provenance, "levelling": ", ".join(done) or "none"},
-    )
+        form = _least_squares_form(height, _DEGREE[how])
+        height = height - form
+        if how == "curvature" and (curvature := _mean_curvature(form, surface.grid)):
+            provenance["subtracted_radius_m"] = -1 / curvature
+    return replace(surface, height=height, provenance=provenance)
+
+
+def _mean_curvature(paraboloid: Array, grid: Grid) -> float:
+    """Mean of the second derivatives of a paraboloid along x and y (1/m); 0 for few pixels."""
+    if min(paraboloid.shape) < 3:
+        return 0.0
+    along_x, along_y = paraboloid[:3, 0], paraboloid[0, :3]
+    hx, hy = grid.spacing
+    return 0.5 * float(np.diff(along_x, 2)[0] / hx**2 + np.diff(along_y, 2)[0] / hy**2)
 
 
 def _least_squares_form(height: Array, degree: int) -> Array:

@@ -116,7 +116,8 @@ def _tilt(contact: Contact) -> Finding | None:
     explained = 1 - float(np.var(level(surface, "tilt").height)) / variance if variance else 0.0
     if explained <= _TILTED:
         return None
-    return Finding("tilted-scan", {"file": surface.provenance["file"], "explained": explained})
+    file = surface.provenance.get("file", "the surface")
+    return Finding("tilted-scan", {"file": file, "explained": explained})
 
 
 def _edge(contact: Contact, indentation: float) -> Finding | None:
