@@ -83,8 +83,8 @@ Times are medians. Ratios are computed for each turn, and the table shows their 
 (smallest–largest). The column U is the time divided by that of one zero-padded convolution (forward
 and inverse) of {nodes} × {nodes} nodes with scipy.fft, two workers and float64. The time of this
 convolution is measured at every turn, and its median is {unit:.1f} ms ({least:.1f}–{largest:.1f}).
-A wide range means that other processes ran at the same time, which slows down programs with several
-threads most.
+A wide range means that other processes ran at the same time. Such processes slow down programs with
+several threads most.
 
 **Settings.** Each program runs with the best settings that were found, and in the units that suit
 it best (see the workers in `benchmarks/peers`). For a half-space that is not periodic, Tamaas

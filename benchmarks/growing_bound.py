@@ -48,8 +48,9 @@ from 2 nm to 5 µm, as in `benchmarks/steel.toml`. The page compares two upper b
 pressure: a constant bound of 750 MPa, and a bound that grows with deformation, for the yield
 strength Y = 268 MPa. The times are CPU times of one thread, because other programs on the machine
 affect them less than the elapsed times. They do not include the time to generate the surface. The
-curves with both bounds are computed {repeats} times in turn. The ratio is the median of the ratios
-of the repeats (smallest and largest in brackets).
+curves with both bounds are computed {repeats} times in turn. Each ratio is the time with the bound
+that grows divided by the time with the constant bound. The table shows the median of the repeats
+(smallest and largest in brackets).
 
 | surface | curve | constant bound, s | bound that grows, s | ratio |
 |---|---|---|---|---|

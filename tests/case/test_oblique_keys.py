@@ -95,7 +95,7 @@ def test_without_angle_and_spin_nothing_changes():
         (
             'angle = "1 deg"',
             {"interface": 'friction = 0.1\nwork_of_adhesion = "0.1 J/m^2"'},
-            "impact.angle: oblique impacts are computed for pairs without adhesion only",
+            "impact.angle: oblique impacts are computed only for pairs without adhesion",
         ),
         (
             f"angle = [{', '.join(MANY)}]",

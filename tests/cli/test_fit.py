@@ -88,7 +88,7 @@ def test_files_belong_together_and_the_fitted_case_runs(cli, files):
         (
             "yield_pressure",
             MEASURED[:38],
-            "there are no residuals from which to estimate the noise",
+            "the noise cannot be estimated from residuals",
         ),
     ],
 )

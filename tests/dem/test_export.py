@@ -120,7 +120,7 @@ def test_refusals(stored, law, refused, cli, tmp_path):
     assert "not a velocity" in said(one, "--to", "yade", "--velocity", "1 m")
     assert "nothing is extrapolated" in said(one, "--to", "edem", "--velocity", "20 m/s")
     message = said(unlike, "--to", "lammps", "--velocity", "1 m/s")
-    assert "the law of another pair cannot replace it" in message
+    assert "needs a separate law for every pair of particle types" in message
     assert "two laws are given" in said(one, one, "--to", "csv")
     assert "holds no law" in said(tmp_path, "--to", "csv")
     assert not (tmp_path / "x").exists()

@@ -118,5 +118,6 @@ def test_velocities_that_were_not_computed_are_refused(equal):
 
 def test_missing_pairs_are_named(mixed):
     some = [law for i, j, law in mixed.pairs() if (i, j) != (1, 2)]
-    with pytest.raises(CaseError, match=r"LAMMPS needs a law for every pair.*glass.*steel"):
+    named = r"LAMMPS needs a separate law for every pair.*glass.*steel"
+    with pytest.raises(CaseError, match=named):
         write(pair_table(some), 1.0)

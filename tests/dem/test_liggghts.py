@@ -38,7 +38,7 @@ def test_any_modulus_is_taken(liggghts, law, texts, E):
 def test_the_least_restitution_is_reproduced_and_less_is_refused(liggghts, law, constant, texts):
     table = pair_table([constant(law(), LOWEST)])
     assert liggghts.pair(texts(write(table, 1.0)), 1, 1) == approx(LOWEST, rel=2e-3)
-    with pytest.raises(CaseError, match=r"has e = 0.05 at 1 m/s, but LIGGGHTS accepts no"):
+    with pytest.raises(CaseError, match=r"has e = 0.05 at 1 m/s, but the export to LIGGGHTS"):
         write(pair_table([constant(law(), 0.05)]), 1.0)
     with pytest.raises(CaseError, match=r"sticks \(e = 0\) at every computed velocity"):
         write(pair_table([constant(law(), 0.0)]), 1.0)
@@ -60,7 +60,7 @@ def test_warnings_are_carried_into_every_file(law):
 def test_missing_pairs_are_named(mixed):
     laws = {(i, j): law for i, j, law in mixed.pairs()}
     without_spheres = [law for pair, law in laws.items() if pair != (1, 2)]
-    with pytest.raises(CaseError, match=r"LIGGGHTS needs a law for every pair"):
+    with pytest.raises(CaseError, match=r"LIGGGHTS needs a separate law for every pair"):
         write(pair_table(without_spheres), 1.0)
     without_wall = [law for pair, law in laws.items() if pair != (2, 3)]
     with pytest.raises(CaseError, match=r"every sphere on every wall.*steel .* and plate"):

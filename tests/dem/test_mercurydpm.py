@@ -79,7 +79,7 @@ def test_warnings_are_carried(law):
 
 def test_missing_pairs_are_named(mixed):
     laws = {(i, j): law for i, j, law in mixed.pairs()}
-    with pytest.raises(CaseError, match=r"MercuryDPM needs a law for every pair"):
+    with pytest.raises(CaseError, match=r"MercuryDPM needs a separate law for every pair"):
         write(pair_table([law for pair, law in laws.items() if pair != (1, 2)]), 1.0)
     with pytest.raises(CaseError, match=r"MercuryDPM needs .* steel .* and plate"):
         write(pair_table([law for pair, law in laws.items() if pair != (2, 3)]), 1.0)

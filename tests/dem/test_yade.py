@@ -111,7 +111,7 @@ def test_pairs_that_stick_or_are_missing_are_refused(law, constant, mixed):
     with pytest.raises(CaseError, match=r"sticks \(e = 0\) at every computed velocity.*YADE"):
         write(pair_table([constant(law(), 0.0)]), 1.0)
     laws = {(i, j): found for i, j, found in mixed.pairs()}
-    with pytest.raises(CaseError, match=r"YADE needs a law for every pair"):
+    with pytest.raises(CaseError, match=r"YADE needs a separate law for every pair"):
         write(pair_table([found for pair, found in laws.items() if pair != (1, 1)]), 1.0)
     with pytest.raises(CaseError, match=r"YADE needs .* glass .* and plate"):
         write(pair_table([found for pair, found in laws.items() if pair != (1, 3)]), 1.0)

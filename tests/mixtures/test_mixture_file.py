@@ -123,7 +123,7 @@ def test_a_pair_may_have_an_interface_of_its_own(mixture_text):
         (
             RADII,
             '{ median = "100 um", geometric_std = 1.5, count = 2 }\nmass_fractions = [0.5, 0.5]',
-            "holds the same number of particles, so fractions cannot be given",
+            "always hold equal numbers of particles",
         ),
         ('material = "steel"', 'material = "steel"\nmass_fractions = [1]', "a wall has no sizes"),
         ("[walls.drum]", "[walls.alu]", "walls.alu: is also the name of a material"),

@@ -17,12 +17,13 @@ _CORRELATED = 0.99  # correlation above which two parameters cannot be told apar
 # A parameter has no effect if doubling it changes the residuals by less than this number of
 # standard deviations.
 _NO_EFFECT = 0.3
-# Another minimum explains the data equally well if its χ² is larger by less than this value. If the
-# best minimum has a reduced χ² above 1, this value is multiplied by the reduced χ². The value
-# is 4, because a parameter that is off by two standard deviations increases χ² by 4.
+# Another minimum explains the data equally well if its χ² exceeds the χ² of the best minimum by
+# less than this value. If the best minimum has a reduced χ² above 1, this value is multiplied by
+# the reduced χ². The value is 4, because a parameter that is off by two standard deviations
+# increases χ² by 4.
 _AS_GOOD = 4.0
-# A combination is a product of powers of parameters. Parameters whose exponent has a smaller
-# magnitude are left out.
+# A combination is a product of powers of parameters. It omits parameters whose exponent has a
+# magnitude below this value.
 _SHARE = 0.1
 # The case does not explain the data if residuals at least as large as the actual ones have a
 # probability below this value.
@@ -125,7 +126,7 @@ def _bounds(found: Fit) -> Iterator[str]:
 
 
 def _other_minima(found: Fit) -> Iterator[str]:
-    """Report another minimum of the search that explains the data equally well."""
+    """Report at most one other minimum of the search that explains the data equally well."""
     best = found.minima[0]
     unit = max(best.squares / max(found.freedom, 1), 1.0)
     for other in found.minima[1:]:

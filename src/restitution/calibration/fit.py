@@ -32,7 +32,7 @@ _FINE = 60  # number of velocities of the fitted curve
 _EQUAL = 0.02  # initial standard deviation of COR if the table of measurements has none
 
 # Smallest standard deviation of COR that is estimated from residuals. The interpolation between
-# velocities is not more accurate than this.
+# velocities is not more accurate than this value.
 _LEAST_NOISE = 1e-4
 
 
@@ -40,7 +40,7 @@ _LEAST_NOISE = 1e-4
 class FittedCurve:
     """The fitted COR at velocities (m/s) over the measured range.
 
-    `half_band` is the half-width of its 95 % confidence band.
+    `half_band` is the half-width of the 95 % confidence band of `restitution`.
     """
 
     velocity: Array
@@ -52,9 +52,10 @@ class FittedCurve:
 class Fit:
     """The result of a fit.
 
-    `x` holds ln(value/first guess) of each parameter. `fitted` and `deviations` are values at the
-    measured velocities. `weights` are the standard deviations by which residuals are divided.
-    `minima` are the minima found from several starts, the best first.
+    `x` holds ln(value/first guess) of each parameter. `fitted` is the fitted COR at the measured
+    velocities. `deviations` contains the deviations from `fitted`, one field for each cause.
+    `weights` are the standard deviations by which residuals are divided. `minima` are the minima
+    found from several starts, the best first.
     """
 
     model: CaseModel
@@ -105,8 +106,10 @@ def fit(
 
     `text` is the content of the case file. File names in it are relative to `folder`. The values of
     `names` in the case file are the first guesses. The impact velocities of `measured` replace the
-    depths of the case. `progress` is called with a short text after every curve. Raises
-    `CaseError`, and the errors of `solve_at_velocity` if the fitted case cannot be solved.
+    indentations, loads or velocities of the case. For each set of parameters, COR is computed
+    against velocity, as one curve for each surface. `progress` is then called with a short text
+    that states the number of curves so far. Raises `CaseError`, and the errors of
+    `solve_at_velocity` if the fitted case cannot be solved.
     """
     content = parse_toml(text)
     parse_case(text).require_impact()
@@ -122,10 +125,10 @@ def fit(
     given = measured.deviation
     data = Data(V, measured.restitution, np.full(V.size, _EQUAL) if given is None else given)
     minima = search_widely(model, data)
-    # The minima were found on cells twice as large. Now search on the grid of the case. Start from
-    # the best minimum at which the case can be solved on this grid.
+    # The minima were found on cells twice as large as those of the case. Now search on the grid of
+    # the case. Start from the best minimum at which the case can be solved on this grid.
     best = next(searches(model, data, [each.x for each in minima]))
-    # Give less weight to points whose COR differs between surfaces or grids.
+    # Give less weight to points whose COR differs between random surfaces or between grids.
     noise = _noise(measured, model.restitution(best.x, V), best.x.size)
     data = replace(data, deviation=np.hypot(noise, _deviations(model, best.x, V).systematic))
     ends = searches(model, data, [each.x for each in distinct([best, *minima])])
@@ -136,18 +139,21 @@ def _check_points(measured: Measured, parameters: int) -> None:
     points = measured.velocity.size
     if points < parameters:
         raise CaseError(
-            f"--free: {parameters} keys are more than the {points} measured points can determine; "
-            "measure more, or free fewer keys"
+            f"--free: {points} measured points cannot determine {parameters} keys; measure more "
+            "points, or free fewer keys"
         )
     if points == parameters and measured.deviation is None:
         raise CaseError(
-            f"--free: with {parameters} keys and as many measured points there are no residuals "
-            "from which to estimate the noise; add the column restitution_std, or measure more"
+            "--free: the noise cannot be estimated from residuals, because there are as many keys "
+            f"as measured points ({points}); add the column restitution_std, or measure more points"
         )
 
 
 def _deviations(model: CaseModel, x: Array, velocity: Array) -> Deviations:
-    """Compute the deviations at `x`; their field `random` includes only the error of the solver."""
+    """Compute the deviations of COR at `x`.
+
+    The field `random` contains the error of the solver, but not the noise of the measurements.
+    """
     here = model.at(x)
     own = here.restitution(velocity)
     each = np.array([curve.restitution(velocity) for curve in here.curves])
@@ -165,7 +171,10 @@ def _deviations(model: CaseModel, x: Array, velocity: Array) -> Deviations:
 
 
 def _noise(measured: Measured, fitted: Array, parameters: int) -> Array:
-    """Standard deviations of the measured COR, estimated from the residuals if not measured."""
+    """Standard deviations of the measured COR.
+
+    If the measurements contain no standard deviations, the residuals give an estimate.
+    """
     if measured.deviation is not None:
         return measured.deviation
     freedom = fitted.size - parameters

@@ -133,7 +133,10 @@ def _parameter(found: Fit, k: int) -> dict[str, Any]:
 
 
 def _known(value: float) -> float | None:
-    """Return `value` (a deviation of a logarithm), or None if it is unknown (≥ ln 10⁶)."""
+    """Return `value`, or None if `value` is at least ln 10⁶ and therefore counts as unknown.
+
+    `value` is a standard deviation or a change of the logarithm of a parameter.
+    """
     return float(value) if value < math.log(1e6) else None
 
 

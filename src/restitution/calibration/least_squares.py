@@ -23,7 +23,8 @@ _STEP = 0.03
 _SCANNED, _STARTS = 15, 2
 # Two minima count as different if the logarithm of a parameter differs by more than this value.
 DISTANCE = math.log(1.5)
-# A minimum is kept if its sum of squares is at most this multiple of the smallest sum of squares.
+# `distinct` drops a minimum if its sum of squares is above this multiple of the smallest sum of
+# squares.
 _WORTH = 3.0
 _FAILED = 1e3  # residual (in standard deviations) assigned to a case that cannot be solved
 _EVALUATIONS = 40  # largest number of function evaluations of a search
@@ -132,9 +133,9 @@ def searches(
 def search_widely(model: CaseModel, data: Data) -> list[Minimum]:
     """Return the minima of searches with `cost="quick"`, the best first.
 
-    The searches start from the first guess and from the best `_STARTS` of `_SCANNED` points. These
-    points are spread evenly over the range of the logarithms of the parameters. Raises `CaseError`
-    if the case cannot be solved at any of these starts.
+    `_SCANNED` points are spread evenly over the range of the logarithms of the parameters. The
+    searches start from the first guess, and from the `_STARTS` points with the smallest sums of
+    squares. Raises `CaseError` if the case cannot be solved at any of these starts.
     """
     from scipy.stats.qmc import Halton
 
@@ -156,8 +157,9 @@ def search_widely(model: CaseModel, data: Data) -> list[Minimum]:
 def distinct(minima: Sequence[Minimum]) -> list[Minimum]:
     """Select minima that differ.
 
-    The first of `minima` is always kept. Each later minimum is kept if it is far from all minima
-    kept before it, and not much worse than the best of the later minima.
+    The first of `minima` is always kept. Another minimum is kept if it meets two conditions. It
+    must differ by more than `DISTANCE` from all minima that are already kept. Its sum of squares
+    must be at most `_WORTH` times the smallest sum of squares of all minima except the first.
     """
     first, *others = minima
     least = min((other.squares for other in others), default=0.0)
@@ -170,7 +172,7 @@ def distinct(minima: Sequence[Minimum]) -> list[Minimum]:
 
 
 def _residuals(model: CaseModel, data: Data, x: Array, cost: Cost) -> Array:
-    """Differences between computed and measured COR, divided by their standard deviations."""
+    """Computed minus measured COR, divided by the standard deviations `data.deviation`."""
     return (model.restitution(x, data.velocity, cost) - data.restitution) / data.deviation
 
 

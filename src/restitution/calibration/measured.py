@@ -66,7 +66,10 @@ def _rows(path: Path) -> list[tuple[int, dict[str, str]]]:
     try:
         kind = path.stat()
         if stat.S_ISDIR(kind.st_mode):
-            raise CaseError(f"{path}: is a folder; give a CSV file, such as table.csv of a law")
+            raise CaseError(
+                f"{path}: is a folder; give a CSV file, such as the table.csv that "
+                "`restitution fit-law` writes"
+            )
         if not stat.S_ISREG(kind.st_mode) or kind.st_size > _LARGEST:
             raise CaseError(
                 f"{path}: is not a regular file, or has more than {_LARGEST} bytes; give a CSV "
@@ -88,8 +91,8 @@ def _rows(path: Path) -> list[tuple[int, dict[str, str]]]:
         if name not in columns:
             has = ", ".join(shown(column) for column in columns[:6]) or "none"
             raise CaseError(
-                f"{path}: the column {name} ({meaning}) is missing; the first line names the "
-                f"columns, separated by commas, and this file has {has}"
+                f"{path}: the column {name} ({meaning}) is missing; write the names of the columns "
+                f"into the first line, separated by commas (this file has {has})"
             )
         if columns.count(name) > 1:
             raise CaseError(f"{path}: has more than one column {name}; keep only one")

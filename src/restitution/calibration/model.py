@@ -1,9 +1,10 @@
 """COR of a case over a range of impact velocities, as a function of the free parameters.
 
-A curve is computed at depths that form a geometric sequence, and their impact velocities cover the
-range. Between these depths the ratio W_u/W_l of unloading work to loading work is interpolated
-(`RatioCurve`). All curves of a surface use depths of the same sequence, so that the interpolated
-COR is a smooth function of the parameters.
+A curve is COR of one surface against impact velocity. It is computed at depths that form a
+geometric sequence. The impact velocities of these depths cover the range. Between the depths the
+ratio W_u/W_l of unloading work to loading work is interpolated (`RatioCurve`). Without adhesion,
+all curves of a surface at the same `Cost` use depths of one sequence. The interpolated COR is then
+a smooth function of the parameters.
 """
 
 from __future__ import annotations

@@ -76,7 +76,10 @@ def free_parameters(content: Mapping[str, Any], names: Sequence[str]) -> tuple[P
 
 
 def _values(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield dotted keys and values; [[roughness]] tables are numbered in the keys, from 1."""
+    """Yield dotted keys with their values.
+
+    The keys contain the number of a [[roughness]] table, counted from 1: "roughness.1.rms".
+    """
     for name, value in table.items():
         if isinstance(value, dict):
             yield from _values(value, f"{before}{name}.")

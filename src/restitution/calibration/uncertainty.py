@@ -8,11 +8,11 @@ divided by σ. Three kinds of deviations contribute to the covariance C of the p
     C = P diag(s²) Pᵀ + 2 S/n + (P Δ_grid)(P Δ_grid)ᵀ,  S = Σ (P Δ)(P Δ)ᵀ/(n − 1).
 
 In the first term, s are the standard deviations of errors that are independent between points. In
-the second term, Δ are the differences of the COR of n computed surfaces from their mean, which is
-fitted to the data. This term is the covariance of the difference between two means: the fitted
-mean, and the measured mean, which is assumed to be over n places of impact. If all impacts hit the
-same place, the term would be (1 + 1/n) S. In the third term, Δ_grid is the deviation due to the
-grid.
+the second term, Δ is the difference of the COR of one computed surface from the mean COR of n
+computed surfaces. The mean COR is fitted to the data. The measured COR is assumed to be a mean over
+n places of impact. The second term is the covariance of the difference between the two means. If
+all impacts hit the same place, the second term is (1 + 1/n) S instead. In the third term, Δ_grid is
+the deviation due to the grid.
 
 Intervals are computed with Student's t distribution, with the degrees of freedom according to Welch
 and Satterthwaite (Satterthwaite 1946).
@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 CONFIDENCE = 0.95
-# Singular values of the scaled Jacobian A below this value are replaced by it. A combination of
+# Lower bound that replaces smaller singular values of the scaled Jacobian A. A combination of
 # parameters with this singular value is known only within a factor of e^1000.
 _LEAST = 1e-3
 # The interval of a parameter counts as infinite if the half-width of the interval of its logarithm
@@ -44,9 +44,9 @@ class Deviations:
 
     `random` are standard deviations of the points, shape (points,), estimated with `freedom`
     degrees of freedom. `surfaces` are the differences of the COR of each surface from the mean over
-    the surfaces, shape (surfaces, points). `grid` is the change of COR on cells twice as large,
-    None if unknown. `model` is the model error of COR (`contact.model_error`), which does not
-    contribute to the intervals.
+    the surfaces, shape (surfaces, points). `grid` is the change of COR if the cells are twice as
+    large as those of the case. It is None if the case cannot be solved on these cells. `model` is
+    the model error of COR (`contact.model_error`), which does not contribute to the intervals.
     """
 
     random: Array
@@ -67,12 +67,12 @@ class Deviations:
 
     @property
     def by_grid(self) -> Array:
-        """Change of COR on cells twice as large, shape (points,); zero if unknown."""
+        """The field `grid`, or zeros if `grid` is None, shape (points,)."""
         return np.zeros(self.random.size) if self.grid is None else self.grid
 
     @property
     def systematic(self) -> Array:
-        """Standard deviations of COR due to surfaces, grid and `random` deviations together."""
+        """Standard deviations of COR due to random surfaces, grid and `random` together."""
         squares = self.random**2 + (self.by_surface**2).sum(axis=0) + self.by_grid**2
         return np.asarray(np.sqrt(squares))
 
@@ -179,7 +179,7 @@ class Uncertainty:
     def best_direction(self) -> Array:
         """The linear combination of logarithms that the data determine best.
 
-        The result contains its coefficients; the coefficient of largest magnitude is 1.
+        Returns the coefficients of the combination. The coefficient of largest magnitude is 1.
         """
         direction = np.linalg.svd(self.scaled, full_matrices=False).Vh[0]
         return np.asarray(direction / direction[np.abs(direction).argmax()])

@@ -165,9 +165,9 @@ class InterfaceTable(Table):
         growing = [key for key in keys if getattr(self, key) is not None]
         if self.yield_pressure is not None and growing:
             raise ValueError(
-                f"yield_pressure, {growing[0]}: give only one of them; yield_pressure limits the "
-                "contact pressure to a constant, and with yield_strength (of a tensile test) this "
-                "limit grows with deformation"
+                f"yield_pressure, {growing[0]}: give only one of them; yield_pressure sets a "
+                "constant limit of the contact pressure, and yield_strength (of a tensile test) "
+                "sets a limit that grows with deformation"
             )
         if self.yield_pressure is not None and self.plasticity == "expanding-cavity":
             raise ValueError(

@@ -21,7 +21,9 @@ from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface, composite
 from restitution.surfaces.refine import divided
 
-DEPTHS = ("indentation", "load", "impact", "pressure")  # tables that can prescribe the depths
+# Tables that can prescribe the depths. A depth is a state of loading. Its indentation, load, impact
+# velocity or nominal pressure is prescribed.
+DEPTHS = ("indentation", "load", "impact", "pressure")
 
 
 class Case(Table):
@@ -102,7 +104,8 @@ class Case(Table):
         if yielding.plasticity != "equilibrium":
             raise ValueError(
                 "interface.yield_pressure: a periodic contact needs a constant yield pressure "
-                '(such as "2.8 Y" or "hardness") or "elastic", and plasticity = "equilibrium"'
+                'and plasticity = "equilibrium"; set yield_pressure to a pressure, "2.8 Y", '
+                '"hardness" or "elastic"'
             )
         if not isinstance(self.grid.refine, int):
             raise ValueError("grid.refine: must be one number if the grid is periodic")
@@ -155,7 +158,7 @@ class Case(Table):
             )
         if self.interface.adhesive_energy > 0:
             raise ValueError(
-                f"{key}: oblique impacts are computed for pairs without adhesion only; remove "
+                f"{key}: oblique impacts are computed only for pairs without adhesion; remove "
                 "this key, or interface.work_of_adhesion"
             )
         for (name, body), spin in zip(self.bodies().items(), impact.spins(), strict=True):
@@ -194,14 +197,15 @@ class Case(Table):
     def variant(self, number: int) -> Case:
         """Return this case with other surfaces.
 
-        `number` is added to the seed of each surface or, for a scan, to the place on the scan.
+        `number` is added to the `seed` of each table [roughness] or, for a scan without a seed, to
+        its `place`.
         """
         return self.model_copy(
             update={"roughness": tuple(part.variant(number) for part in self.roughness)}
         )
 
     def has_library_values(self) -> bool:
-        """Whether the materials library supplies a value of a body, so that its spread is known."""
+        """Whether the materials library supplies any value (with its spread) of a body."""
         return any(body.from_library() for body in self.bodies().values())
 
     def refined(self, factor: int | tuple[int, ...]) -> Case:
@@ -308,7 +312,7 @@ class Case(Table):
         return needs.run_bytes(grid, plasticity=plasticity, adhesion=adhesion)
 
     def depths(self) -> list[float]:
-        """The values that prescribe the depths, in increasing order.
+        """The values that prescribe the depths (see `DEPTHS`), in increasing order.
 
         They are indentations (m), loads (N), impact velocities (m/s) or nominal pressures (Pa).
         """

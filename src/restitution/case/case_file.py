@@ -212,7 +212,7 @@ def _keys_of(path: list[str], loc: tuple[Any, ...], root: type[Table]) -> list[s
 
 
 def _table_at(path: list[str], loc: tuple[Any, ...]) -> type[Table] | None:
-    """The class of the table of a case at `path`; None if there is no such table."""
+    """The class of the table at `path` in a case file; None if there is no such table."""
     if path[:2] == ["roughness", "crop"]:
         return CropTable
     if path[0] == "roughness":

@@ -20,8 +20,8 @@ _SURFACE = 75.0  # a generated surface
 _SKEWED = 115.0  # a generated surface with skewness or kurtosis
 _MARGIN = 60.0  # per node of the enlarged grid from which a non-periodic surface is cut
 _SCAN = 60.0  # per pixel of a scan: reading, levelling and its spectrum
-_BAND = 90.0  # per node of the grid on which the shortest waves of a twin are adjusted
-_DESCRIBED = 150.0  # autocorrelation, spectrum and page of `restitution surface`
+_BAND = 90.0  # per node of the finest grid for adjusting the waves of a twin
+_DESCRIBED = 150.0  # `restitution surface`: autocorrelation, spectrum and HTML page
 
 # Bytes per node for each model of plasticity and of adhesion. A run needs the larger of the values
 # for its two models. A run with an attraction of finite range ("cohesive") keeps the pressure and
@@ -51,7 +51,7 @@ def require(needed: float, grid: Grid) -> None:
 
 
 def run_bytes(grid: Grid, *, plasticity: str, adhesion: str) -> float:
-    """Memory (bytes) of a run on `grid`, without making the surface.
+    """Memory (bytes) of a run on `grid`. The surface need not exist yet.
 
     `plasticity` and `adhesion` are names of models. "none" means elastic bodies, or no adhesion.
     """
@@ -72,18 +72,20 @@ def generated_bytes(grid: Grid, *, normal: bool, periodic: bool) -> float:
 
 
 def measured_bytes(grid: Grid, scan: Grid, *, twin: bool) -> float:
-    """Memory (bytes) for placing a scan on `grid`, or for making its `twin`.
+    """Memory (bytes) for placing a scan on `grid` or, if `twin`, for making a twin of the scan.
 
-    `scan` is the grid of the pixels of the scan.
+    A twin is a random surface with the statistics of the scan. `scan` is the grid of the pixels of
+    the scan.
     """
     size = _PROCESS + _SURFACE * nodes_of(grid) + _SCAN * nodes_of(scan)
     return size + _BAND * _band_nodes(grid, scan) if twin else size
 
 
 def _band_nodes(grid: Grid, scan: Grid) -> float:
-    """Upper estimate of the nodes of the finest grid on which waves of a twin are adjusted.
+    """Upper estimate of the number of nodes of the finest grid that a twin needs for adjustment.
 
-    `grid` is the grid of the twin, and `scan` the grid of the pixels of the scan.
+    The phases of the waves of a twin are adjusted on several grids (see `surfaces.twin`). `grid` is
+    the grid of the twin, and `scan` is the grid of the pixels of the scan.
     """
     repeats = [max(1.0, s / g) for s, g in zip(scan.size, grid.size, strict=True)]
     ratio = min(h / pixel for h, pixel in zip(grid.spacing, scan.spacing, strict=True))

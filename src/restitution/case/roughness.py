@@ -35,7 +35,7 @@ from restitution.surfaces.shift import place_of
 from restitution.surfaces.twin import LEAST_PIXELS
 
 MOST_REALISATIONS = 1000
-MOST_PLACES = 10_000  # largest value of `place`, the number of a place of impact on a scan
+MOST_PLACES = 10_000  # largest `place`, the number of the scan's point that is moved to the middle
 
 # Key of the case file for each argument of `crop` and `remove_outliers`.
 _CLEANING_KEYS = {
@@ -153,8 +153,8 @@ class MeasuredRoughness(Table):
             raise ValueError('extend = "twin" makes a random surface and needs a seed; give a seed')
         if self.seed is not None and self.extend != "twin":
             raise ValueError(
-                'seed applies only to extend = "twin"; remove seed; to use another part of the '
-                'scan, set the key "place"'
+                'seed applies only to extend = "twin"; remove seed, or replace it by place to use '
+                "another part of the scan"
             )
         if self.place and self.extend == "twin":
             raise ValueError('place does not apply to extend = "twin"; remove place, or vary seed')
@@ -163,14 +163,14 @@ class MeasuredRoughness(Table):
     def variant(self, number: int) -> Self:
         """Return the table of one other surface.
 
-        `number` is added to the seed of a twin, or to the place on the scan.
+        `number` is added to `seed` if the surface is a twin of the scan, and otherwise to `place`.
         """
         if self.seed is None:  # only a twin has a seed
             return self.model_copy(update={"place": self.place + number, "realisations": 1})
         return self.model_copy(update={"seed": self.seed + number, "realisations": 1})
 
     def scan(self, folder: Path) -> Surface:
-        """Read, clean and level the scan, and move its point `place` to the middle.
+        """Read, clean and level the scan, and move the point with the number `place` to the middle.
 
         The file name is relative to `folder`.
         """

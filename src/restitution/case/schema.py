@@ -106,7 +106,10 @@ Quantity = TypeVar("Quantity")
 
 
 class Series(Table, Generic[Quantity]):
-    """A table that prescribes the depths, such as `[load]`: a range with steps, or a list."""
+    """A table that prescribes the depths (states of loading), such as `[load]`.
+
+    The prescribed values are given as a range with steps or as a list.
+    """
 
     from_: Annotated[Quantity | None, Field(alias="from")] = None
     to: Quantity | None = None
@@ -128,14 +131,13 @@ class Series(Table, Generic[Quantity]):
             raise ValueError(f"give `from`, `to` and `steps` (or `{self.list_key} = [...]`)")
         elif self.from_ == self.to:
             raise ValueError(
-                f"from and to are equal; for a single value use {self.list_key} = [...]"
+                f"`from` and `to` are equal; for a single value use `{self.list_key} = [...]`"
             )
         elif not cast(float, self.from_) < cast(float, self.to):
             raise ValueError("`from` must be smaller than `to`")
         elif self.steps == 1:
             raise ValueError(
-                "steps = 1 does not span from and to; give at least 2, or for a single value use "
-                f"{self.list_key} = [...]"
+                f"`steps` must be at least 2; for a single value use `{self.list_key} = [...]`"
             )
         return self
 
@@ -155,9 +157,10 @@ _Many = Field(min_length=1, max_length=MOST_STEPS)
 class ImpactTable(Series[Velocity]):
     """The table `[impact]`: a range of velocities with steps, or the list `velocity`.
 
-    If `angle` or `spin` is given, oblique impacts are computed, too: one for each combination of a
-    velocity of the centres and an angle from the normal. `spin` lists the spin of the first body,
-    or the spins of both bodies.
+    If `angle` or `spin` is given, oblique impacts are computed, too. Each combination of a velocity
+    and an angle defines an oblique impact. The velocity is the relative velocity of the centres,
+    and the angle is measured from the normal. `spin` lists the spin of the first body, or the spins
+    of both bodies.
     """
 
     values: Annotated[

@@ -63,7 +63,7 @@ def _run() -> int:
         if error.errno not in _OUTPUT_FAILS:
             raise
         print_error(f"standard output cannot be written ({error.strerror}); redirect it elsewhere")
-        # Without this, Python would try at exit to write the rest of its buffer, and fail again.
+        # Drop the stream. Otherwise Python would try to write its buffer at exit and fail again.
         sys.stdout = None
     except Stopped as stop:
         return stop.status

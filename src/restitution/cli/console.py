@@ -20,7 +20,7 @@ def say(text: str, console: Console = answers, style: str | None = None) -> None
 
 
 def table_of_numbers(*columns: str | Column) -> Table:
-    """Make an empty table. Columns that are given by their names only are right-aligned."""
+    """Make an empty table. A column given as a text, not as a `Column`, is right-aligned."""
     each = (
         column if isinstance(column, Column) else Column(column, justify="right", no_wrap=True)
         for column in columns

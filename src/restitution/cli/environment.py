@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from restitution.errors import CaseError, shown
 
-# Variables for the number of threads. The first of them that is set is used.
+# Environment variables for the number of threads. The first variable that is set is used.
 _THREADS = ("DUCC0_NUM_THREADS", "OMP_NUM_THREADS")
 
 

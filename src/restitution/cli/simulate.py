@@ -100,8 +100,8 @@ def simulate(
     courses, blended = [], False
     for each in velocities:
         found, energies = collide_in_time(force, each), law.at(each)
-        # The error that the force curves cause is estimated as the difference between the
-        # simulated COR and the COR computed from the stored energies.
+        # The difference between the simulated COR and the COR from the stored energies estimates
+        # the error that the force curves cause. The error of the latter COR is a lower bound.
         error = max(abs(found.restitution - energies.restitution), energies.error)
         courses += course(found)
         table.add_row(

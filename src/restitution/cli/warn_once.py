@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Protocol
 
-# The message that counts the repetitions of a warning quotes this many of its first characters.
+# Largest number of characters of a warning that are quoted in the message about its repetitions.
 _QUOTED = 60
 
 

@@ -62,10 +62,12 @@ def release_nodes(
     first_guess: Array | None = None,
     residual: float,
 ) -> tuple[State, State]:
-    """Hold nodes in contact, then release nodes until the detachment criterion selects none.
+    """Hold nodes in contact, then release nodes as long as some meet the detachment criterion.
 
-    `held` marks the nodes that are held at first. `held` and `first_guess` are arrays on `box`.
-    Returns the state before the first release and the state after the last one.
+    `held` marks the nodes that are held at first. `held` and `first_guess` (Pa) are arrays on
+    `box`. `limit` (Pa) is the upper bound of the pressure. The plastic displacement of `history`
+    is included in the gap. `residual` is the tolerance of the last solve. Returns the state before
+    the first release and the state after the last one.
     """
     grid, pair = contact.grid, contact.pair
     around = union(candidate_box(contact, indentation, history), bounding_box(held, box))
@@ -136,11 +138,12 @@ def grow_contact(
     first_guess: Array | None = None,
     residual: float,
 ) -> State:
-    """Grow the contact of the undeformed bodies outwards from the nodes `held`, ring by ring.
+    """Let the contact grow outwards from the nodes `held`, ring by ring, and return its state.
 
-    The first ring is one cell wide. If nearly all of its nodes stay in contact, the next ring is
-    twice as wide. The contact stops growing when a further ring of one cell no longer lowers the
-    energy. With `pohrt-popov` all rings are one cell wide, and the contact grows while nodes of the
+    The bodies have no plastic displacement before this load. The first ring is one cell wide. If
+    nearly all of its nodes stay in contact, the next ring is twice as wide. The contact stops
+    growing when a further ring of one cell no longer lowers the energy. Under the detachment
+    criterion `pohrt-popov`, all rings are one cell wide, and the contact grows while nodes of the
     ring stay in contact.
     """
     closure = contact.detachment == "crack-closure"
@@ -187,8 +190,8 @@ def _is_better(wider: State, state: State) -> bool:
     """Whether `wider` is preferred to `state`, both at the same indentation.
 
     The wider contact is preferred if its energy (elastic energy minus work of adhesion times area)
-    is lower. With `pohrt-popov`, or if `state` has no contact nodes, it is preferred if it has more
-    contact nodes.
+    is lower. Under the detachment criterion `pohrt-popov`, or if `state` has no contact nodes, the
+    wider contact is preferred if it has more contact nodes.
     """
     contact = state.contact
     if contact.detachment == "pohrt-popov" or not state.contact_nodes:

@@ -26,10 +26,10 @@ _CROWDING = 1.5
 # The error estimate is this factor times the change of the work when every second depth is left
 # out. The factor is above 1 because the force of rough contacts jumps.
 _MARGIN = 1.5
-# The loading steps influence which nodes attach. The resulting error of the work, as a fraction of
-# the work of adhesion times the contact area, is estimated by these values. The true error, the
-# difference from loading in 240 steps, was smaller than the estimate in 93 % of 29 validation
-# contacts with `equilibrium`, and in all 11 contacts with `pull-increments`.
+# The loading steps influence which nodes attach. For each value of `Contact.approach`, this is the
+# estimated error of the work, as a fraction of the work of adhesion times the contact area. The
+# true error is the difference from loading in 240 steps. It was smaller than the estimate in 93 %
+# of 29 validation contacts with `equilibrium`, and in all 11 contacts with `pull-increments`.
 _PINNING = {"equilibrium": 0.02, "pull-increments": 0.006, "hertzian": 0.0}
 
 # Largest number of bisections of the quadrature of `work_by_force`.

@@ -43,11 +43,13 @@ ridge is the ratio of the pressures at first yield of a cylinder and of a sphere
 for ν = 0.3 (Johnson 1985, §§4.2, 4.4).
 
 All other constants were fitted to finite element results (docs/validation.md lists the constants
-and their range).
-c₂ is above 3 because it also accounts for pile-up around a deep contact, which the model does not
-resolve. The bound reaches c₂ Y at the largest indentation of the finite element results. If the
-material hardens with a tangent modulus, Y is replaced by the flow stress at the representative
-strain 0.2 a/R (Tabor 1951) minus its value at first yield, with a/R = π m/(2E*).
+and their range). c₂ is above 3 because it also accounts for pile-up around a deep contact, which
+the model does not resolve. The bound reaches c₂ Y at the largest indentation of the finite element
+results.
+
+If the material hardens with a tangent modulus, the factor Y of the bound is replaced by a flow
+stress. The representative strain is 0.2 a/R (Tabor 1951), with a/R = π m/(2E*). The increase of
+this strain since first yield is the plastic strain at which the flow stress is evaluated.
 """
 
 from __future__ import annotations

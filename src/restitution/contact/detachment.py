@@ -68,8 +68,8 @@ _LARGEST_ON_COARSE_GRIDS = 1.04
 # A grid counts as fine if the rim under tension is wider than _RESOLVED_RIM (cells). The mean of G
 # is then accurate. A patch is at rest if the mean of 1 − sqrt(w/G) over its edge is below _AT_REST,
 # where w is the work of adhesion and nodes with G < w count as zero. On a fine grid the tension
-# limit is not applied, because nodes at the kinks of an edge reach this limit as soon as G = w, and
-# their release would roughen the edge.
+# limit is not applied. Nodes at the kinks of an edge reach this limit as soon as G = w, and their
+# release would roughen the edge.
 _RESOLVED_RIM, _AT_REST = 2.0, 0.002
 # Smallest width (cells) of a strip along the edge whose nodes are all released together. If the
 # strip is narrower, single nodes are released.
@@ -102,10 +102,10 @@ def released_by_closure(edge: Edge, p: Array, work_of_adhesion: float, limit: fl
     """Select nodes to release by `crack-closure`, from the pressure `p` and the contact `edge`.
 
     Nodes are released until the energy release rate falls to the work of adhesion. `_recession`
-    estimates how far the edge must recede for this at each edge node. All nodes under tension
-    within this distance of the smoothed outline are released. If this strip is narrow or contains
-    no such node, single nodes under the largest tension are released instead. On coarse grids,
-    nodes whose tension exceeds `limit` (Pa) are also released.
+    estimates the distance by which each edge node must recede. It defines a strip of this width
+    inside the smoothed outline, and all nodes under tension in the strip are released. If the
+    strip is narrow or has no nodes under tension, single nodes under the largest tension are
+    released instead. On coarse grids, nodes whose tension exceeds `limit` (Pa) are also released.
     """
     tensile = edge.touching & (p < 0)
     fine = bool(np.count_nonzero(tensile) > _RESOLVED_RIM * edge.G.size)
@@ -121,11 +121,15 @@ def released_by_closure(edge: Edge, p: Array, work_of_adhesion: float, limit: fl
 
 
 def _recession(edge: Edge, tensile: Mask, work_of_adhesion: float, fine: bool) -> Array:
-    """Distance (cells) by which each edge node must recede; zero if its patch is at rest.
+    """Distance (cells) by which each edge node must recede until G falls to the work of adhesion w.
 
-    At a fixed indentation, sqrt(G) falls linearly as the edge recedes, where G is the energy
-    release rate. In a smooth contact (JKR), receding by the small distance d reduces sqrt(G) by the
-    fraction d/(2t), where t is the width of the rim under tension.
+    At a fixed indentation, the square root of the energy release rate G falls linearly as the edge
+    recedes. In a smooth contact (JKR), receding by the small distance d reduces sqrt(G) by the
+    fraction d/(2t), where t is the width of the rim under tension. So d = 2t [1 − sqrt(w/G)].
+
+    The distance is zero at edge nodes without tension and at edge nodes with G ≤ w. If the grid is
+    `fine`, it is also zero on patches at rest (see `_AT_REST`). On coarser grids, w is multiplied
+    by `_LARGEST_ON_COARSE_GRIDS`. `tensile` marks the contact nodes under tension.
     """
     largest = (1.0 if fine else _LARGEST_ON_COARSE_GRIDS) * work_of_adhesion
     moves = (largest < edge.G) & tensile[edge.nodes]
@@ -159,8 +163,8 @@ class Edge:
         i, j = np.nonzero(touching & ~surrounded)
         side, node = np.nonzero(~T[i + 1 + _FACES[:, :1], j + 1 + _FACES[:, 1:]])
         # A step outwards adds a fixed number to the flat index of a node. The new index can be
-        # outside the array only if the contact reaches the edge of the grid, and this raises an
-        # error later.
+        # outside the array only if the contact reaches the edge of the grid. Such a contact raises
+        # an error later.
         row = touching.shape[1]
         here = i[node] * row + j[node]
         outwards = (_FACES @ np.array([row, 1]))[side]
@@ -241,7 +245,8 @@ def _curvature(touching: Mask, nodes: Nodes, faces: NDArray[np.intp]) -> Array:
     """Mean curvature (1/cell) of the outline of the patch of each edge node, at most 0.35.
 
     It is 2π divided by the perimeter of the patch. The perimeter is estimated as π/4 times the
-    number of faces between the patch and the nodes outside, as for an average smooth outline.
+    number of faces between the patch and the nodes outside. The factor is the average ratio of the
+    length of a smooth outline to the length of its staircase.
     """
     patch = _patch_numbers(touching, nodes)
     total = np.bincount(patch, weights=faces)[patch]

@@ -109,8 +109,8 @@ def cerruti_displacement(
 
     A tangential force Q along x moves the surface of a half-space of shear modulus G by
     u = Q [(1 − ν)/r + ν x²/r³]/(2πG) along x, at the distance r from the force (Cerruti 1882;
-    Johnson 1985, *Contact Mechanics*, eq. 3.75). With y²/r³ = ∂²r/∂x² and x²/r³ = ∂²r/∂y², which
-    add up to 1/r, the integral over the cell is
+    Johnson 1985, *Contact Mechanics*, eq. 3.75). Its two terms are integrated over the cell by the
+    identities y²/r³ = ∂²r/∂x², x²/r³ = ∂²r/∂y² and 1/r = x²/r³ + y²/r³. The result is
 
         u = α [[x asinh(y/|x|)]] + β [[y asinh(x/|y|)]],   α = Σ (1 − ν)/(2πG),   β = Σ 1/(2πG).
 

@@ -1,4 +1,4 @@
-"""Error of COR due to the models of plasticity and of adhesion.
+"""Error of the coefficient of restitution (COR) due to the models of plasticity and of adhesion.
 
 The error of plasticity comes from a comparison with finite elements (docs/validation.md). The
 largest relative differences of COR in this comparison are tabulated as a function of the COR due to
@@ -10,8 +10,8 @@ results, the nearest value is used and may be too small.
 
 The second part of the error belongs to `adhesion = "jkr"`, which neglects the range of the
 attraction and therefore dissipates too much energy. This part is computed from a table of the
-energy that smooth elastic spheres dissipate in one cycle of contact, divided by the energy
-dissipated in JKR theory, as a function of the Tabor parameter
+energy that smooth elastic spheres dissipate in one cycle of contact. The table gives this energy as
+a fraction of the energy dissipated in JKR theory, for several values of the Tabor parameter
 (docs/studies/cohesive_reference.csv).
 """
 
@@ -65,9 +65,9 @@ def hysteresis_ratio(tabor: float) -> float:
     """Energy dissipated in a contact cycle of smooth elastic spheres, as a fraction of that of JKR.
 
     Up to the Tabor parameter µ = 5, the result is interpolated in a table. For larger µ, its
-    difference from 1 is extrapolated as a power of µ, with the exponent between µ = 3 and 5. Up to
-    µ = 5 this exponent increases with µ, so the extrapolated result is more likely too small than
-    too large.
+    difference from 1 is extrapolated as µ^(−n). The exponent n = 0.44 is that of the table values
+    at µ = 3 and 5. In the table n increases with µ, so the extrapolated result is more likely too
+    small than too large.
     """
     if tabor >= _TABOR[-1]:
         return 1 - (1 - _HYSTERESIS[-1]) * math.pow(_TABOR[-1] / tabor, _BEYOND)

@@ -28,9 +28,9 @@ def solve_at_pressure(contact: Contact, pressure: float, *, residual: float = RE
     """Load a periodic contact to a nominal pressure, within a relative error of 1e-8.
 
     For the solve, the bodies are put on an elastic foundation, whose compression is proportional to
-    the mean pressure. The foundation makes the problem positive definite even in complete contact,
-    where the indentation of the bodies alone no longer depends on the pressure. The compression of
-    the foundation is finally subtracted from the indentation.
+    the mean pressure. Without the foundation, the indentation of a complete contact does not depend
+    on the pressure. The foundation makes the problem positive definite even in this case. The
+    compression of the foundation is finally subtracted from the indentation.
 
     Args:
         contact: Periodic contact to load.
@@ -47,7 +47,7 @@ def solve_at_pressure(contact: Contact, pressure: float, *, residual: float = RE
         NotConvergedError: A tolerance was not reached.
     """
     if not contact.periodic:
-        raise CaseError("contact: only a periodic contact has a nominal pressure; use solve")
+        raise CaseError("contact: only a periodic contact has a nominal pressure; call solve()")
     if contact.adhesive:
         raise CaseError(
             "contact: the bodies attract each other, so the pressure jumps on approach; prescribe "

@@ -48,7 +48,9 @@ def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None 
     if mass is None:
         raise CaseError("density: is missing; an impact velocity needs the density of both bodies")
     if contact.periodic:
-        raise CaseError("velocity: the bodies of a periodic contact have no mass; use solve")
+        raise CaseError(
+            "velocity: the bodies of a periodic contact have infinite mass; call solve()"
+        )
     if not 0 < velocity < math.inf:
         raise CaseError(f"velocity: {velocity} m/s is not positive")
     work = 0.5 * mass * velocity**2

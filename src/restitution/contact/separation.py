@@ -184,8 +184,9 @@ def separation_of(path: list[State]) -> Separation:
         return _cohesive_separation(start, end, path)
     trapezoid = -float(np.trapezoid(force, depth))
     late = -float(np.dot([_late_force(state) for state in path[1:]], np.diff(depth)))
-    # The energy that the bodies lose along the path must equal the work of the force. `late` is the
-    # part of this work due to nodes that are released only at the end of a step.
+    # The energy that the bodies lose along the path must equal the work of the force. In each step,
+    # the force falls linearly to its value before the release of nodes. `trapezoid` uses the value
+    # after the release instead, so it exceeds this work by `late`.
     unaccounted = (start.loading_work - end.loading_work) - (trapezoid - late)
     curve = unloading_curve(path)
     found = curve.work()

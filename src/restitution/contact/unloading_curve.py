@@ -23,8 +23,9 @@ _SMOOTHED = 11  # number of points to which each parabola that smooths the force
 # A change of the force between two points is a jump if it exceeds this fraction of the largest
 # tension.
 _JUMP = 0.1
-# The indentation at separation is smaller than at the last balance of a contact area, by at least
-# this fraction of the decrease from the beginning of unloading to that balance.
+# Smallest decrease of the indentation from the last balance to separation, as a fraction of the
+# decrease from the beginning of unloading to the last balance. It keeps the last two points of the
+# curve apart.
 _END = 1e-3
 # Two forces at one indentation count as equal if their difference is at most this fraction of the
 # largest tension or of the force, whichever is larger. Balances scatter by about this fraction.
@@ -110,9 +111,9 @@ def complete_curve(path: Sequence[State]) -> list[tuple[float, float]]:
     """Indentations (m) and forces (N) of a `path` from `separate`, including both of its ends.
 
     The first point is the state at which unloading begins, and the last one is the separation, with
-    zero force. Between them are the points of `unloading_curve`. Tensions above the pull-off force,
-    which are due to scatter, are reduced to it. The work from these points agrees with the work of
-    `unloading_curve` within the error of the latter.
+    zero force. Between them are the points of `unloading_curve`. Tensions above the pull-off force
+    are due to scatter and are replaced by the pull-off force. The work from these points agrees
+    with `UnloadingCurve.work` within the error of that work.
     """
     curve, begin, end = unloading_curve(list(path)), path[0], path[-1]
     if not curve.balanced:

@@ -43,8 +43,8 @@ from restitution.laws.law import Law
 _NEARLY_ELASTIC = 1e-4
 _TOLERANCE = 1e-12  # tolerance of root finding
 # If the dissipation d times the impact velocity V is below this value, the series e = 1 − ⅔ dV is
-# used. Its omitted terms are of the order (dV)². Solving the equation for e would lose more digits
-# to rounding than the series omits.
+# used. It omits terms of the order (dV)². If the equation were solved for e instead, the rounding
+# errors would be larger than these terms.
 _SMALL = 1e-6
 # Largest ζ in the search for a given e; e is below 0.001 for ζ = 20.
 _LARGEST_DAMPING = 20.0

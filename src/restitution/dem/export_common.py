@@ -95,10 +95,11 @@ class Pair:
 
 @dataclass(frozen=True)
 class Export:
-    """An export of `table` to `code`, which holds at the impact velocity `velocity` (m/s).
+    """An export of `table` to `code`.
 
-    `lowest` is the smallest e that `code` reproduces. `ends` describes the condition at which
-    `code` ends a contact. `constant` says whether e in `code` is the same at every velocity.
+    `velocity` (m/s) is the impact velocity at which the exported e of each pair holds. `lowest`
+    is the smallest e that `code` reproduces. `ends` describes the condition at which `code` ends a
+    contact. `constant` says whether e in `code` is the same at every velocity.
     """
 
     table: PairTable
@@ -120,9 +121,9 @@ class Export:
             e = law.at(self.velocity).restitution
             if e < self.lowest:
                 raise CaseError(
-                    f"{law.pair} {_failure(law, e)} at {self.velocity:.6g} m/s, but {self.code} "
-                    f"accepts no coefficient of restitution below {self.lowest:g}; export at a "
-                    "higher velocity, or use an adhesive contact model"
+                    f"{law.pair} {_failure(law, e)} at {self.velocity:.6g} m/s, but the export to "
+                    f"{self.code} requires e of at least {self.lowest:g}; export at a higher "
+                    "velocity, or use an adhesive contact model"
                 )
             found.append(Pair(i, j, bodies[i - 1], bodies[j - 1], law, self.velocity, e))
         return found

@@ -57,9 +57,9 @@ class PairTable:
         if missing:
             more = f" (and {len(missing) - 1} more)" if len(missing) > 1 else ""
             raise CaseError(
-                f"{code} needs a law for every {what}, but there is none for "
-                f"{missing[0]}{more}; the law of another pair cannot replace it: compute the "
-                "missing law (`restitution run`, `restitution fit-law`) and give it, too"
+                f"{code} needs a separate law for every {what}, but the law for "
+                f"{missing[0]}{more} is missing; compute missing laws with `restitution run` "
+                "and `restitution fit-law`, and add them to the command"
             )
 
 

@@ -69,7 +69,8 @@ class LiveCurves:
     def beside(self, tab: str, shown: str, check: Callable[[], None]) -> Iterator[str]:
         """Yield the curve of the smooth bodies, then the surface, for the last case of `tab`.
 
-        The surface is left out if its key is `shown`, because the page then shows it already.
+        The surface is left out if the hash of its heights is `shown`, because the page already
+        shows this surface.
         """
         curve = self._curves.get(tab)
         if curve is not None:

@@ -25,11 +25,11 @@ _GENERATED = get_args(RoughnessKind)
 class Field:
     """A field of the form, which edits the key `key` of the case file.
 
-    `unit` is the SI unit of the quantity. `low` and `high` are the ends of the slider in this unit;
-    a field without them has no slider. If `when` is given, the field is shown only while the key
-    `when[0]` has one of the values `when[1:]`, where "" stands for a missing key. `initial` is the
-    value of a field that appears for the first time. Fields with `more` are placed under "More",
-    which is open if one of them has a value.
+    `unit` is the SI unit of the quantity. If `low` and `high` are given, they are the ends of a
+    slider, in this unit. If `when` is given, the field is shown only while the key `when[0]` has
+    one of the values `when[1:]`. In `when`, "" stands for a missing key. When the field appears for
+    the first time, a missing key is set to `initial`. A field with `more` is placed in the section
+    "More" of its group. This section is open if one of its fields has a value.
     """
 
     key: str

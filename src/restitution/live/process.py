@@ -27,7 +27,8 @@ _LOST = as_json(
     }
 )
 _CLOSED = as_json({"error": "the program has ended; start restitution app again", "lost": True})
-_AGAIN = "again"  # makes `ask` repeat a request whose process was ended to stop another request
+# If a process is ended to stop one request, this line makes `ask` repeat the other requests.
+_AGAIN = "again"
 _Lines = asyncio.Queue[str | None]
 
 

@@ -1,9 +1,9 @@
 """The server of the page: it sends static files, and answers requests that only this page can make.
 
 These requests are POST requests with the token, which is part of the address of the page. An Origin
-header, if there is one, must name this page. The Host header must name this machine, because
-otherwise a web site could point its own domain name to this machine (DNS rebinding), and its pages
-could then reach the server.
+header, if there is one, must name this page. The Host header must name this machine. Otherwise a
+web site could let its own domain name refer to this machine (DNS rebinding), and the pages of this
+site could reach the server.
 """
 
 from __future__ import annotations

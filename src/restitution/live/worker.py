@@ -88,7 +88,7 @@ class Inbox:
                     self._drop((message.tab, message.kind))
                     self._waiting[message.tab, message.kind] = message
                 else:
-                    # The request with this number is in progress, waiting, or already answered.
+                    # If the request is in progress, `check` stops it. If it still waits, drop it.
                     self._given_up.add(message)
                     for key in [k for k, each in self._waiting.items() if each.number == message]:
                         self._drop(key)

@@ -102,10 +102,10 @@ class Family:
         nodes = 2 * math.ceil(0.5 * width / spacing)
         if nodes > _MOST_NODES:
             raise CaseError(
-                f"grid: the waves of {self.name} need cells of {1e6 * spacing:.3g} um, and the "
-                f"contact needs a grid of {1e6 * width:.3g} um, which would have {nodes} nodes per "
-                f"edge (at most {_MOST_NODES} are allowed); give the table [grid], fewer "
-                "velocities, or sizes that differ less"
+                f"grid: the pair {self.name} needs {nodes} nodes per edge, but at most "
+                f"{_MOST_NODES} are allowed (spacing {1e6 * spacing:.3g} um for the roughness, "
+                f"grid width {1e6 * width:.3g} um for the contact); give the table [grid], lower "
+                "velocities, or smaller radii"
             )
         return {"nodes": nodes, "spacing": f"{spacing!r} m", "refine": "auto"}
 
@@ -133,9 +133,11 @@ class Family:
         }
 
     def _velocities(self, radius: float) -> list[float]:
-        """Velocities (m/s) of the mixture, extended for all pairs of the family.
+        """Velocities (m/s) of the case for the reduced `radius` (m).
 
-        Impacts of two pairs of a family correspond if W/R*³ is equal, where W is the impact energy.
+        They are the velocities of the mixture, and lower and higher ones as needed. At these
+        velocities the case covers the range of W/R*³ of all pairs of the family, where W is the
+        impact energy.
         """
         asked = self.mixture.velocities
         own = _particle(self.first, radius if self.second.wall else 2 * radius)

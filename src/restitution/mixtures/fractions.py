@@ -44,9 +44,8 @@ def number_fractions(
         raise CaseError(f"{where}: a wall has no sizes; remove this key")
     if isinstance(sizes, dict) and "median" in sizes:
         raise CaseError(
-            f"{where}: each bin of a log-normal distribution holds the same number of particles, "
-            "so fractions cannot be given; remove this key, or replace median and geometric_std in "
-            "radius by edges or bins"
+            f"{where}: the bins of a log-normal distribution always hold equal numbers of "
+            "particles; remove this key, or give edges or bins instead of median and geometric_std"
         )
     fractions = _checked(where, table.pop(given[0]), len(radii))
     power = 3 if given[0] == "mass_fractions" else 0

@@ -73,7 +73,8 @@ class Component:
 
     Attributes:
         name: Name of the component in the mixture file.
-        body: Table `[first]` of a case as written in the file, without `radius`.
+        body: Keys of a body table of a case (`[first]` or `[second]`) without `radius`, as written
+            in the mixture file.
         material: The checked values of `body`.
         roughness: Roughness tables.
         radii: Radii of the sizes (m), increasing; empty for a wall.

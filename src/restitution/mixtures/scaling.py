@@ -1,9 +1,10 @@
 """Laws of all pairs of a family, from the laws at a few reduced radii R*.
 
 At equal W/R*³, where W is the loading work, the ratio of unloading work to W is interpolated in
-ln R* by a monotone cubic. The error is estimated as in `RatioCurve`: 1.5 times the larger
-leave-one-out residual of the two neighbouring radii. A single residual can be zero by chance.
-Therefore, the largest estimate at the velocity itself and the two neighbouring velocities is used.
+ln R* by a monotone cubic. `RatioCurve` estimates the error at each velocity from the leave-one-out
+residuals of the two neighbouring radii. Such a residual can be zero by chance. Therefore, the error
+at a velocity is the largest of the estimates at this velocity and at the two neighbouring
+velocities.
 """
 
 from __future__ import annotations
@@ -22,8 +23,8 @@ from restitution.mixtures.family import Family, Meeting
 
 Array = NDArray[np.float64]
 
-# An interpolation error of COR above the limit given for the mixture is still accepted if it is at
-# most _SHARE times the error of the computed laws, and at most _MOST.
+# The interpolation error of COR may exceed the limit given for the mixture. It must then be at most
+# _SHARE times the error of the computed laws, and at most _MOST.
 _SHARE, _MOST = 0.25, 0.05
 _SAME = 1e-9  # largest relative difference of radii that count as equal
 
@@ -123,7 +124,10 @@ class Computed:
         used = [k for k, share in enumerate(shares) if share > _SAME]
 
         def mean(name: str, power: int) -> float:
-            """Interpolate the field `name`, which scales as R*^power, between the two laws."""
+            """Interpolate the field `name` between the laws at the two neighbouring radii.
+
+            The field is assumed to be proportional to R*^power.
+            """
             R = meeting.radius
             return R**power * sum(
                 shares[k]

@@ -33,6 +33,6 @@ def write_report(out: Path) -> Path:
                     f"{one_line(str(error))}); compute them again"
                 ) from error
     raise OutputError(
-        f"{out}: holds no results (none of the files {', '.join(_PAGES)}); give the folder "
-        "that a command wrote with -o"
+        f"{out}: holds no results; give a folder that a command wrote with -o (it contains one of "
+        f"the files {', '.join(_PAGES)})"
     )

@@ -66,7 +66,7 @@ def cor_chart(x: Axis, series: Sequence[Series], title: str = "") -> Chart:
 
 
 def bars(cor: Array, error: Array) -> tuple[Array, str]:
-    """Make bars of the total error below and above `cor`, shape (2, n), and their label.
+    """Return the lengths of the error bars below and above `cor`, shape (2, n), and a legend text.
 
     COR lies between 0 and 1, so the bars are cut at 0 and 1.
     """

@@ -56,7 +56,10 @@ def oblique_figure(results: xr.Dataset) -> Figure:
 
 
 def _points(results: xr.Dataset, variable: str, scale: float) -> Iterator[Points]:
-    """Yield a series for each impact velocity; open markers: part of the contact sticks."""
+    """Yield a series for each impact velocity.
+
+    A marker is open if part of the contact sticks.
+    """
     degrees = np.degrees(results["oblique_angle"].values)
     for k, velocity in enumerate(results["oblique_velocity"].values):
         values = scale * results[variable][k].values

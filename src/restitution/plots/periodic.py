@@ -22,7 +22,7 @@ def periodic_figures(results: xr.Dataset) -> Iterator[tuple[str, Figure]]:
 def area_against_pressure(results: xr.Dataset) -> Figure:
     """Plot relative contact area and mean gap against nominal pressure.
 
-    For comparison, the area after Persson is drawn for an elastic contact.
+    A dashed line shows Persson's contact area of an elastic contact, for comparison.
     """
     title = results.attrs.get("title", "")
     # Leave out negative nominal pressures (due to attraction), because the axis is logarithmic.

@@ -34,7 +34,7 @@ def surface_map(surface: Surface, title: str = "") -> Figure:
 
 
 def height_distribution(density: HeightDensity, curve: MaterialRatio) -> Figure:
-    """Plot the probability density of heights, a normal density, and the material ratio."""
+    """Plot the density of heights, the normal density of equal Sq, and the material ratio."""
     x = 1e9 * density.height
     return Figure(
         "",
@@ -75,7 +75,10 @@ def autocorrelation_figure(R: Autocorrelation) -> Figure:
 
 
 def spectrum_figure(spectra: list[DirectedSpectrum]) -> Figure:
-    """Plot power spectral densities: means over all directions, near x, and near y."""
+    """Plot power spectral densities.
+
+    They are averages over all directions, over directions near x, and over directions near y.
+    """
     series: list[Line] = []
     largest = 0.0
     for each, color, dash in zip(spectra, PALETTE, (SOLID, DOTTED, DASHED), strict=False):

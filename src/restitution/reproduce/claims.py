@@ -23,8 +23,9 @@ Array = NDArray[np.float64]
 Studies = Mapping[str, xr.Dataset]
 Verdict = Literal["agrees", "agrees in part", "does not agree", "not decided"]
 
-# Reduced radius R* (m), contact modulus E* (Pa), yield pressure p_y (Pa) and radius (m) of the two
-# steel spheres of the paper. The radius R in the paper is taken as the radius of each sphere.
+# Values of the two steel spheres of the paper: reduced radius R* (m), contact modulus E* (Pa),
+# yield pressure p_y (Pa) and radius of each sphere (m). The constant R is the reduced radius. The
+# symbol R of the paper is taken as RADIUS.
 R, E_STAR, P_Y, RADIUS = 250e-6, 112e9, 750e6, 500e-6
 SMOOTH = "1 pm"  # rms roughness of cases that represent the smooth sphere
 _VARIABLES = ("indentation", "restitution", "force", "pull_off_force", "resolved")
@@ -259,8 +260,8 @@ def _single_nodes(flags: NDArray[np.bool_]) -> str:
 def critical_indentation(curve: Curve, smooth: Curve) -> float:
     """Depth (m) beyond which COR stays within 5 % of the smooth sphere's; NaN if not reached.
 
-    Between the last depth with a larger difference and the next depth, the result is interpolated
-    in the logarithm of depth.
+    The result lies between the last depth with a larger difference and the next depth. There the
+    difference is interpolated linearly in the logarithm of depth.
     """
     off = np.abs(curve.cor / smooth.cor - 1)
     apart = np.flatnonzero(off > _NEAR)

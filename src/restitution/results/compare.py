@@ -106,9 +106,10 @@ def _curves(
 
 
 def _weights(depths: NDArray[np.float64], depth: float) -> dict[int, float]:
-    """Weights, by row number, of the rows of a curve for interpolation at `depth`.
+    """Return the weights for interpolating a curve at `depth`, by row number.
 
-    The result is empty if `depth` is outside the range of `depths`.
+    The rows of the curve have the depths `depths`. The result is empty if `depth` is outside their
+    range.
     """
     same = np.flatnonzero(np.abs(depths - depth) <= _SAME * depth)
     if same.size:
@@ -152,7 +153,7 @@ def _error(row: _Row) -> float:
 def _complete_cases(
     study: StudyResults,
 ) -> dict[tuple[tuple[str, str], ...], list[dict[str, float]]]:
-    """Rows of the curve of each complete case of a study, by its swept values."""
+    """For the swept values of each complete case, return the rows of the curve of this case."""
     return {
         tuple(case.swept.items()): case.curve.rows
         for case in study.cases
@@ -161,7 +162,7 @@ def _complete_cases(
 
 
 def _run(folder: Path) -> tuple[list[dict[str, float]], str]:
-    """Rows of the curve and text of the case of a run.
+    """Return the rows of the curve of a run, and the text of its case file.
 
     The text is empty if the run was killed and left only its curve.
     """

@@ -55,9 +55,9 @@ class Curve:
     def at(self, work: Array) -> Array:
         """Interpolate COR at `work` (J): monotone cubic in ln(work), constant beyond the ends.
 
-        If every impact loses energy, the logarithm of the loss is interpolated. Then COR is right
-        also between bodies that stick and bodies that separate, where COR rises steeply from zero.
-        All values are NaN if the curve is empty.
+        If every impact loses energy, the logarithm of the energy loss is interpolated instead of
+        COR. This keeps COR accurate between impacts that stick and impacts that separate, where COR
+        rises steeply from zero. All values are NaN if the curve is empty.
         """
         from scipy.interpolate import PchipInterpolator
 

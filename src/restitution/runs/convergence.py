@@ -115,11 +115,11 @@ def _add_errors(
     runs: _Runs,
     progress: Say,
 ) -> None:
-    """Add to the rows of the finest grid what `_with_grid_errors` needs.
+    """Add the errors due to surface and materials to the rows of the finest grid.
 
-    These are the errors due to surface and materials (`errors_known` says whether all of them could
-    be computed), `unseen_yield` and `octaves` (of `Band`). A row whose loading work is not positive
-    gets none of them.
+    Also add `errors_known`, which is true if all of these errors could be computed. Also add
+    `unseen_yield` and `octaves` (see `error_budget`), from which `_with_grid_errors` computes the
+    discretisation error. Rows whose loading work is not positive stay unchanged.
     """
     reached = [row for row in runs[max(runs)][1] if row["loading_work_J"] > 0]
     if not reached:
@@ -244,9 +244,10 @@ def _with_grid_errors(rows: list[Row]) -> int:
 
     The first part is a minimum error, because differences of COR between grids may vanish by
     chance. The second part is the effect of the waves that the finest grid leaves out of a scan.
-    The third part is the effect of nodes that would yield only on a finer grid. If the study was
-    interrupted before `_add_errors`, the rows get no parts and no total. A row with an unknown
-    error gets no total. Returns the number of rows that are unresolved because of the waves.
+    The third part is the effect of nodes that would yield only on a finer grid. Rows without the
+    values of `_add_errors`, or with an unknown discretisation error, stay unchanged. The total
+    error is set only if all of its parts are known. Rows in which the omitted waves change COR by
+    more than `MISSING_BAND` are marked as not resolved. Returns the number of these rows.
     """
     lacking = 0
     for row in rows:

@@ -236,8 +236,8 @@ def mean_rows(curves: Sequence[Sequence[Row]], errors: Sequence[Row] = ()) -> li
     mean ± t s/√n with Student's t, clipped to [0, 1]. With one surface, s and the ends are NaN.
 
     `errors` are the rows of one surface with the errors due to grid and materials. These errors are
-    used for the means, too. `surface_scatter` is half of the width of the confidence interval. A
-    depth that only one surface reached has no total.
+    used for the means, too. `surface_scatter` is half of the width of the confidence interval. The
+    total error of a depth that only one surface reached stays unknown.
     """
     rows = []
     for depth in range(max(map(len, curves), default=0)):

@@ -9,9 +9,10 @@ COR is the mean over surfaces of the same kind, on a grid that resolves all wave
 
     discretisation_error² = ΔCOR² [1 + (1.5 n)²] + (q² D)² + (s f)²,   n = ln(S/S_h)/ln(S_h/S_2h).
 
-S is the rms slope of the scan. S_h and S_2h are the rms slopes on cells of size h, the cell size of
-the run, and 2h. The formula assumes that the waves that the grid leaves out change COR with ln S at
-the same rate as the last octave that the grid resolves. For generated surfaces n = 0 and S = S_h,
+S is the rms slope of the scan. S_h is the rms slope on cells of size h, the cell size of the run,
+and S_2h is the rms slope on cells of size 2h. The waves that the grid leaves out change ln S by n
+times as much as the last octave that the grid resolves. The formula assumes that these omitted
+waves change COR by n ΔCOR. The safety factor is 1.5. For generated surfaces n = 0 and S = S_h,
 because their definition includes the shortest wave.
 
 D is the change of COR on cells of 2h if the yield pressure is multiplied by (S_2h/S)². Waves
@@ -208,10 +209,10 @@ def add_errors(
     """Add the errors due to grid, surface and materials, and their total, to the rows of a run.
 
     `surface` is the surface of the deepest depth. If `scattered` is false, the scatter between
-    surfaces is left out. If the loading work of a row is not positive, no impact has its maximum at
-    this depth, and the row gets no errors. If a part of the error of a row is unknown, the row gets
-    no total. Returns the errors due to waves that the grid leaves out, one for each row that gets
-    errors.
+    surfaces is left out. A row whose loading work is not positive stays unchanged, because impacts
+    cannot have their maximum indentation at its depth. The total error of a row is set only if all
+    of its parts are known. Returns the errors due to waves that the grid leaves out, one for each
+    row with a positive loading work.
     """
     band: list[float] = []
     reached = [row for row in rows if row["loading_work_J"] > 0]

@@ -47,7 +47,10 @@ class RunLog:
         self.tell(warning)
 
     def progress_of(self, name: str) -> Say:
-        """Return a `progress` function for one of several runs that adds the `name` of the run."""
+        """Return a `progress` function for one of several runs.
+
+        The function puts the `name` of the run before each message.
+        """
         return lambda words: self.progress(f"{name}, {words}")
 
     def warnings_of(self, part: ResultsFolder) -> Say:

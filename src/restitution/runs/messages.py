@@ -32,7 +32,8 @@ _ERRORS: dict[Code, type[RestitutionError]] = {
     "pixel-above-contact": SurfaceError,
     "range-unresolved": CaseError,
 }
-_NEARLY_JKR = 0.9  # no warning if the energy lost by adhesion is above this fraction of JKR's loss
+# `no_range` warns only if the energy lost by adhesion is at most this fraction of JKR's loss.
+_NEARLY_JKR = 0.9
 _KEYS = {"force": "load", "velocity": "impact"}  # argument of a solver: key of the case file
 
 

@@ -89,12 +89,12 @@ def run_case(
     `text` is the text of the case file, and files named in the case are relative to `folder`. The
     case has one surface (see `ensemble`). `grid.refine = "auto"` is replaced first (`refinement`).
 
-    With `errors` (and unless the case has total_error = false), every row gets its total error
-    (`error_budget`), and a depth that does not converge is left out. Without `errors`, a depth that
-    does not converge ends the curve, because rows of several runs are compared by their row number.
-    Contact at the edge of the grid always ends the curve. If depths fail, the first of their errors
-    is raised at the end of the run. Before any error is raised, the results so far and the reason
-    are written. If there are no results, the folder is removed.
+    With `errors`, a depth that does not converge is left out, and the total errors of the rows are
+    computed (`error_budget`) unless the case has total_error = false. Without `errors`, a depth
+    that does not converge ends the curve, because rows of several runs are compared by their row
+    number. Contact at the edge of the grid always ends the curve. If depths fail, the first of
+    their errors is raised at the end of the run. Before any error is raised, the results so far and
+    the reason are written. If there are no results, the folder is removed.
 
     Depths are measured from first touch on the finest grid. `progress` is called with a few words
     after every depth. `warn` is called with every warning: about the input before the first solve,
@@ -336,7 +336,7 @@ def _adhesion_of(contact: Contact, case: Case) -> dict[str, Any]:
 
 
 def _unbalanced(checks: list[dict[str, float]]) -> Iterator[str]:
-    """Yield a warning if the energy balance of an unloading curve is off."""
+    """Yield a warning if the work of an unloading curve differs too much from the stored energy."""
     off = [check for check in checks if not abs(check["relative_to_stored_energy"]) <= _BALANCE]
     if off:
         worst = max(off, key=lambda check: abs(check["relative_to_stored_energy"]))

@@ -16,11 +16,11 @@ from restitution.contact.loading import solve
 from restitution.numerics.grid import Grid
 from restitution.theory import FirstYield, Hertz
 
-# Number of nodes along each edge of a grid: 32 nodes per predicted contact radius. Eight nodes per
-# contact radius would keep the error of COR below 0.3 %.
+# Number of nodes along each edge of a grid, 32 per predicted contact radius. This number is ample,
+# because eight nodes per contact radius already keep the error of COR below 0.3 %.
 _NODES = 80
 _WIDTH = 2.5  # ratio of the width of a grid to the predicted contact radius
-_DEPTHS = 20  # number of depths
+_DEPTHS = 20  # number of depths up to yield, and again beyond yield
 
 
 def smooth_curve(

@@ -65,7 +65,8 @@ def remove_outliers(surface: Surface, threshold: float) -> Surface:
 
     Each height is compared with the median of the 5 x 5 pixels around it. A pixel is an outlier if
     this difference exceeds `threshold` standard deviations. The standard deviation of the
-    differences is estimated from their median absolute value, on which outliers have little effect.
+    differences is estimated from their median absolute value, because outliers hardly change a
+    median.
     The number of outliers and their largest difference are added to the provenance.
 
     Args:
@@ -92,9 +93,9 @@ def remove_outliers(surface: Surface, threshold: float) -> Surface:
     count = int(np.count_nonzero(out))
     if count > _MOST * out.size:
         raise SurfaceError(
-            f"threshold: {count / out.size:.0%} of the pixels differ from the median of their "
-            f"neighbours by more than {threshold:g} standard deviations, too many to be outliers; "
-            "give a larger threshold, or do not remove outliers"
+            f"threshold: {count / out.size:.0%} of the pixels deviate by more than {threshold:g} "
+            f"standard deviations, but at most {_MOST:.0%} may be outliers; give a larger "
+            "threshold, or do not remove outliers"
         )
     return replace(
         surface,

@@ -31,8 +31,8 @@ def composite(surfaces: Sequence[Surface]) -> Surface:
     them first.
 
     The provenance of the sum contains the provenance of each part, with the prefixes `part_1_`,
-    `part_2_`, … It also states the files, the largest pixel size, the rms height and slope of the
-    removed waves, and whether all parts are periodic.
+    `part_2_`, … It also states the files, the largest pixel size and whether all parts are
+    periodic. For resampled parts, it also states the rms height and slope of the removed waves.
 
     Args:
         surfaces: Surfaces on the same grid.

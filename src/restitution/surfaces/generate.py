@@ -182,8 +182,8 @@ def _heights(
     else:
         if (heights := distribution(z.size, *wanted)) is None:
             raise SurfaceError(
-                f"kurtosis: no Johnson distribution was found with a skewness of "
-                f"{wanted[0]:g} and a kurtosis of {wanted[1]:g}; give a larger kurtosis"
+                f"kurtosis: this program cannot make heights with a skewness of {wanted[0]:g} "
+                f"and a kurtosis of {wanted[1]:g}; give a larger kurtosis"
             )
         z, made["amplitude_misfit"] = adjusted(z, heights)
         made["method"] = "Schreiber and Schmitz 1996, adjusted amplitudes"

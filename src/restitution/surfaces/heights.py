@@ -1,7 +1,8 @@
 """Rough surfaces with given wave amplitudes and given skewness and kurtosis of the heights.
 
-There are two methods. `filtered` gives white noise η a skewness Sk_η and a kurtosis K_η (Johnson's
-translation) and then filters the noise. The filtered heights z have the skewness and kurtosis
+There are two methods. `filtered` transforms white noise η so that it has a skewness Sk_η and a
+kurtosis K_η (module `johnson`). Then it filters the noise. The filtered heights z have the skewness
+and kurtosis
 
     Sk_z = Sk_η Σθ³/(Σθ²)^{3/2},   K_z − 3 = (K_η − 3) Σθ⁴/(Σθ²)²,
 

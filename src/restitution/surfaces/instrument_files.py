@@ -70,7 +70,7 @@ def read_instrument(path: Path, channel: int | None) -> Scan:
 
 
 def _check_archive(path: Path) -> None:
-    """Raise `SurfaceError` if the file is an archive (such as X3P) that is too large unpacked."""
+    """Raise `SurfaceError` if an archive (such as X3P) would be too large after unpacking."""
     if not zipfile.is_zipfile(path):
         return
     try:

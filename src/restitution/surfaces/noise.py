@@ -14,8 +14,8 @@ def white_noise(shape: tuple[int, int], seed: int) -> Array:
 
     # NumPy never changes the raw stream of a bit generator, but the methods of Generator (such as
     # standard_normal) can change between releases (NEP 19). So the raw 64-bit words are mapped to
-    # normal numbers here. The inverse normal distribution is infinite at 0 and 1, which
-    # u = (52 bits + ½)/2⁵² never reaches. With 53 bits, u could round to 1.
+    # normal numbers here. The inverse normal distribution is infinite at 0 and 1, but
+    # u = (52 bits + ½)/2⁵² never reaches these values. With 53 bits, u could round to 1.
     u = (_random_bits(np.random.PCG64(seed), shape[0] * shape[1]) + 0.5) * 2.0**-52
     return np.asarray(ndtri(u).reshape(shape))
 

@@ -77,8 +77,8 @@ def radial_spectrum(surface: Surface, density: Array | None = None) -> RadialSpe
     least, most = 2 * math.pi / min(surface.grid.size), math.pi / max(surface.grid.spacing)
     count = max(1, round(_BANDS_PER_OCTAVE * math.log2(max(most / least, 1.0))))
     edges = np.geomspace(0.999 * least, 1.001 * most, count + 1)
-    # Band 0 contains the waves below the lowest band and the waves without density. It is left out,
-    # as are the waves above the highest band.
+    # Band 0 contains the waves below the lowest band and the waves without density. Band 0 and the
+    # waves above the highest band are left out.
     band = np.where(np.isfinite(C), np.digitize(q, edges), 0).ravel()
     size = np.bincount(band, minlength=count + 2)[1:-1]
     sums = (np.bincount(band, values.ravel(), count + 2)[1:-1] for values in (q, C))
@@ -86,7 +86,7 @@ def radial_spectrum(surface: Surface, density: Array | None = None) -> RadialSpe
 
 
 def directed_spectra(surface: Surface) -> list[DirectedSpectrum]:
-    """Radial spectra of all directions, of those within 15° of x, and of those within 15° of y."""
+    """Radial spectra over all directions, near the x axis (±15°) and near the y axis (±15°)."""
     C = power_spectral_density(surface)
     qx, qy = (
         2 * math.pi * np.fft.fftfreq(n, h)

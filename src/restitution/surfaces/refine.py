@@ -42,11 +42,11 @@ def refine(surface: Surface, factor: int) -> Surface:
 def coarsen(surface: Surface, factor: int = 2) -> Surface:
     """Resample `surface` to cells `factor` times as large.
 
-    Waves of at most two new cells are removed; longer waves are unchanged.
+    Waves that are not longer than two new cells are removed. Longer waves do not change.
 
-    If the number of nodes is not a multiple of `factor`, the new cells are slightly smaller than
-    this, so that a whole number of cells covers the domain. Raises `SurfaceError` for a factor
-    below 1.
+    A whole number of new cells covers the domain. If the number of nodes is not a multiple of
+    `factor`, the new cells are therefore slightly smaller than `factor` old cells. Raises
+    `SurfaceError` for a factor below 1.
     """
     if factor < 1:
         raise SurfaceError(f"factor: {factor} is not a positive integer")

@@ -87,7 +87,8 @@ def left_out(surface: Surface, kept: Array, spacing: tuple[float, float]) -> dic
     - `removed_rms_m`: rms height of the removed waves
     - `removed_slope`: rms slope of the removed waves divided by that of the original surface
     - `shortest_carried_m`: wavelength of the shortest remaining wave
-    - `pixel_x_m`, `pixel_y_m`: largest pixel size before this or any earlier resampling
+    - `pixel_x_m`, `pixel_y_m`: pixel size of `surface`; if an earlier resampling started from
+      larger pixels, their size
     """
     before = surface.provenance
     pixel = [

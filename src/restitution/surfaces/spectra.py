@@ -196,7 +196,7 @@ def _check_shortest(shortest: float | None, grid: Grid) -> None:
         raise SurfaceError(
             f"shortest: {shortest * 1e6:g} um is not a wavelength that the grid can represent "
             f"({2e6 * max(grid.spacing):g} to {1e6 * max(grid.size):g} um); reduce grid.spacing, "
-            "or leave out the key shortest"
+            "or leave out the key 'shortest'"
         )
 
 

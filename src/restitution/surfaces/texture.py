@@ -29,14 +29,17 @@ class Autocorrelation(NamedTuple):
 
 
 class MaterialRatio(NamedTuple):
-    """Abbott curve: material ratios from 0 to 1, and heights (m) above the mean, which decrease."""
+    """Abbott curve: rising material ratios from 0 to 1, and falling heights (m) above the mean."""
 
     ratio: Array
     height: Array
 
 
 class HeightDensity(NamedTuple):
-    """Heights (m) above the mean, their density (1/m), and the normal density (1/m) of equal Sq."""
+    """Heights (m) above the mean and their probability density (1/m).
+
+    `normal` is the density (1/m) of a normal distribution with the same Sq.
+    """
 
     height: Array
     density: Array
@@ -74,9 +77,9 @@ def texture(surface: Surface) -> dict[str, float | None]:
 
 
 def height_density(surface: Surface) -> HeightDensity:
-    """Probability density of the heights above their mean, and the normal density of equal Sq.
+    """Probability density of the heights above their mean, and of a normal distribution.
 
-    The normal density of a flat surface is set to 0.
+    The normal distribution has the same Sq. Its density is set to 0 for a flat surface.
     """
     z = surface.height - surface.height.mean()
     density, edges = np.histogram(1e9 * z, bins=_BINS, density=True)

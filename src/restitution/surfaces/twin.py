@@ -38,7 +38,7 @@ from restitution.surfaces.wave_spectrum import Modes, WaveSpectrum, spectrum_of
 LEAST_PIXELS = 16  # smallest number of pixels of a scan along each axis
 _UNADJUSTED = 0.01  # fraction of the scan's mean square height in waves that are not adjusted
 _FIRST_BAND = 2**20  # largest number of nodes of the grid for the band of the longest waves
-_LEAST_FIRST = 8  # smallest number of cells along an edge of the scan, on the grid of this band
+_LEAST_FIRST = 8  # smallest number of cells per edge of the scan, on the grid for these waves
 
 # Largest number of adjustments of a band: _WORK divided by the number of nodes of the band's grid,
 # but at least the first and at most the second value of _ADJUSTMENTS.
@@ -49,9 +49,9 @@ _NEGLIGIBLE = 1e-3  # misfit of heights at which the adjustment ends
 _STANDSTILL = 0.05  # the adjustment ends if the misfit decreases by less than this fraction
 
 # Largest number of parts of the twin whose spectra are averaged and compared with the spectrum of
-# the scan. Each part is as large as the scan.
+# the scan. Each part is as large as the scan or, if the twin is smaller, as the twin.
 _PARTS = 16
-_COMPARED = 2**23  # largest number of nodes of all these parts, if there is more than one part
+_COMPARED = 2**23  # largest total number of nodes of these parts; a single part may have more
 _UNLIKE = 0.5  # misfit of the spectrum above which the notice contains a warning
 
 # Probabilities of the quantiles that represent a distribution of heights, denser in the tails.
@@ -68,9 +68,10 @@ def twin(scan: Surface, grid: Grid, seed: int) -> Surface:
 
     The provenance describes the waves left out (`removed_…`) and contains the statistics of the
     scan (`scan_…`). It also contains `spectrum_misfit`, the root mean square of the relative
-    difference between the spectra of twin and scan. The spectra are compared on parts of the twin
-    as large as the scan, in bands of a quarter octave. The weight of a band is the sum of two
-    fractions: its share of the mean square height and its share of the mean square slope.
+    difference between the spectra of twin and scan. The spectra are compared on parts of the
+    twin, in bands of a quarter octave. Each part is as large as the scan or, if the twin is
+    smaller, as the twin. The weight of a band is the sum of two fractions: its share of the mean
+    square height and its share of the mean square slope.
 
     Raises `SurfaceError` for a scan that is flat or has fewer than 16 pixels along an axis, and for
     cells that are too large for any wave of the scan.

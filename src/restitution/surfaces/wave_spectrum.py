@@ -97,7 +97,7 @@ def spectrum_of(scan: Surface, period: tuple[float, float]) -> WaveSpectrum:
     C *= 1 / (scan.grid.size[0] * scan.grid.size[1] * waves[0] * waves[1])
     raw = WaveSpectrum(C, (waves[0], waves[1]), scan.grid.spacing, period)
     wanted = float(np.var(scan.height)), rms_slope(scan) ** 2
-    moments = _moments(raw)  # without a factor, because a = 1 and b = 0
+    moments = _moments(raw)  # here a = 1 and b = 0, so the factor a + b/k² is 1
     a, b = wanted[0] / moments[0, 0], 0.0
     if abs(np.linalg.det(moments)) > 1e-9 * abs(moments[0, 0] * moments[1, 1]):
         a, b = (float(value) for value in np.linalg.solve(moments, wanted))
@@ -109,13 +109,13 @@ def spectrum_of(scan: Surface, period: tuple[float, float]) -> WaveSpectrum:
 
 
 def _moments(spectrum: WaveSpectrum) -> Array:
-    """Mean square height and mean square slope (rows) for the powers C and C/k² (columns).
+    """Mean square height and mean square slope (rows) for the powers P and P/k² (columns).
 
-    The power of `spectrum` is C (a + b/k²), where k is the size of the scan divided by the
-    wavelength, and a and b are its coefficients `flat` and `steep`. Slopes are differences between
-    neighbouring pixels, as in `rms_slope`. Long waves are summed one by one, over the wave vectors
-    of the twin. Short waves are summed over the wave vectors of the scan, which are fewer, because
-    the twin is not smaller than the scan.
+    P = C (a + b/k²) is the power of `spectrum`, where k is the size of the scan divided by the
+    wavelength. The coefficients a and b are the fields `flat` and `steep`. Slopes are differences
+    between neighbouring pixels, as in `rms_slope`. Long waves are summed one by one, over the wave
+    vectors of the twin. Short waves are summed over the wave vectors of the scan. The scan has
+    fewer wave vectors than the twin, because the scan is not larger than the period of the twin.
     """
     wx, wy = spectrum.waves
     (mx, my), (hx, hy) = spectrum.density.shape, spectrum.pixel

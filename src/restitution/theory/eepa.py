@@ -3,13 +3,13 @@
 J. P. Morrissey, thesis, University of Edinburgh (2013); S. C. Thakur, J. P. Morrissey, J. Sun, J.
 F. Chen, J. Y. Ooi, Granular Matter 16 (2014) 383–400. The stiffnesses are k₁ (loading), k₂
 (unloading) and k_adh (adhesion). The exponent n is the same for all branches (1: linear, 3/2:
-Hertz-like). The constant force is f₀ ≤ 0 and the largest indentation d = δ_max. At δ_p the
-unloading force has fallen to f₀, and at δ_min the unloading branch meets the adhesive branch. The
-loading work is W_l, the work returned on unloading W_u, and the impact velocity V:
+Hertz-like). f₀ ≤ 0 is the constant force and d = δ_max the largest indentation. At δ_p the
+unloading force has fallen to f₀. At δ_min the unloading branch meets the adhesive branch. W_l is
+the loading work, W_u the work that the contact returns on unloading, and V the impact velocity:
 
     loading     F = f₀ + k₁δⁿ
     unloading   F = f₀ + k₂(δⁿ − δ_pⁿ),  δ_p = (1 − k₁/k₂)^{1/n} d
-    adhesion    F ≥ f₀ − k_adhδⁿ, reached at δ_min = μd,  μⁿ = (k₂ − k₁)/(k₂ + k_adh)
+    adhesion    F = f₀ − k_adhδⁿ from δ_min = μd to δ = 0,  μⁿ = (k₂ − k₁)/(k₂ + k_adh)
     work        W_l = f₀d + k₁d^{n+1}/(n + 1)
                 W_u = f₀d + [k₂ − (n + 1)(k₂ − k₁) + n(k₂ + k_adh) μ^{n+1}] d^{n+1}/(n + 1)
     impact      ½ m* V² = W_l, e² = W_u/W_l; if W_u ≤ 0, e = 0: the bodies stick at some δ > 0
@@ -19,9 +19,9 @@ The contact begins and ends at δ = 0, where the force jumps between f₀ and ze
 e² = [1 − (n + 1)q + n q^{1+1/n}] k₂/k₁ with q = 1 − k₁/k₂. For n = 1, e² = k₁/k₂.
 
 Here k_adh is a constant. Some codes (EDEM, PFC, LIGGGHTS by default) derive k_adh from a surface
-energy, so that it depends on δ_p. The exponent of their adhesive branch (Morrissey's χ) may differ
-from n. The dashpot of the model is left out. The stiffnesses are parameters to be fitted; R* and E*
-do not enter.
+energy, so that k_adh depends on δ_p. The exponent of their adhesive branch (Morrissey's χ) may
+differ from n. The dashpot of the model is left out. The stiffnesses are parameters to be fitted;
+the law does not use R* and E*.
 Units, shapes and errors are those of `restitution.theory`, with stiffness in N/mⁿ.
 """
 

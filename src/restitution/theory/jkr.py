@@ -2,8 +2,9 @@
 
 K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. Lond. A 324 (1971) 301–313, doi
 10.1098/rspa.1971.0141; D. Maugis, *Contact, Adhesion and Rupture of Elastic Solids*, Springer 2000.
-The force and the indentation are those of a Hertz contact, minus those at which an adhering flat
-punch of the same contact radius a detaches (`kendall`). With the work of adhesion w:
+JKR combines a Hertz contact and an adhering flat punch (`kendall`) of the same contact radius a.
+The JKR force is the Hertz force minus the pull-off force of the punch. The JKR indentation is the
+Hertz indentation minus the pull-off displacement of the punch. With the work of adhesion w:
 
     F = 4E*a³/(3R*) − (8πE*wa³)^½,   δ = a²/R* − (2πwa/E*)^½
 
@@ -99,10 +100,10 @@ class JKR(PositiveFields):
     def force(self, indentation: Values) -> Array:
         """Normal force of spheres in contact, on the branch that is stable at fixed grips.
 
-        With the pull-off force F_c, the force is −5/9 F_c at the indentation δ_b where the contact
-        breaks and −8/9 F_c at δ = 0, with a minimum of −F_c between them. For δ < 0 this is the
-        force on separation; approaching spheres have no force before they jump into contact at
-        δ = 0.
+        F_c is the pull-off force. The force is −5/9 F_c at the indentation δ_b, where the contact
+        breaks. It is −8/9 F_c at δ = 0. Its minimum, −F_c, lies between δ_b and 0. For δ < 0 the
+        result is the force on separation. On approach, the force is 0 until the spheres jump into
+        contact at δ = 0.
 
         Args:
             indentation: Approach δ of the spheres (m).

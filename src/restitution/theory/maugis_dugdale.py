@@ -32,7 +32,7 @@ from ._roots import increasing_root
 # 1.15, its value in the JKR limit.
 _LARGEST_RADIUS = 2.0
 _GOLDEN = 0.5 * (5**0.5 - 1)
-_SECTIONS = 60  # number of steps of this golden-section search
+_SECTIONS = 60  # number of steps of the golden-section search for the pull-off force
 
 
 @dataclass(frozen=True, eq=False)

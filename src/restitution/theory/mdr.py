@@ -1,22 +1,24 @@
 """MDR, the law of LAMMPS' `pair_style granular mdr`, for one elastic, perfectly plastic contact.
 
 W. Zunker, K. Kamrin, J. Mech. Phys. Solids 183 (2024) 105492, as implemented in the source of
-LAMMPS (release 22Jul2025): one sphere of radius R on a rigid flat, here without adhesion
-(`dgamma` = 0) and without damping. E is Young's modulus, ν Poisson's ratio and Y the yield strength
-of a tensile test. δ, R and m belong to the one sphere, and V is its impact velocity. With
-x = δ_max/R, E* = E/(1 − ν²) and G = E/(2 + 2ν):
+LAMMPS (release 22Jul2025). The law describes one sphere on a rigid flat, here without adhesion
+(`dgamma` = 0) and without damping. δ is the indentation of the sphere, R its radius, m its mass and
+V its impact velocity. E is Young's modulus, ν Poisson's ratio and Y the yield strength of a tensile
+test. MDR is the method of dimensionality reduction: a row of independent springs, the transformed
+half-space, replaces the elastic half-space. With x = δ_max/R, E* = E/(1 − ν²) and G = E/(2 + 2ν):
 
     pressure    p_Y = Y (1 + 1.75 exp(−4.4x)), the mean pressure of the yielded contact
     yield       at δ_Y, where Hertz's mean pressure 4E*(δ/R)^½/3π reaches p_Y
     loading     Hertz up to δ_Y, then  F = πp_Ya²,  a² = 2Rδ − δ² + δ_Y² − δ_YR
-    unloading   an elliptical indenter of width 2a and height A = 4p_Ya/E* leaves the transformed
-                half-space. The depth of the indenter is d = A/2 at full load and
-                δ_e = ½A(1 − cos θ) later:
-                F = ½E*Aa (θ − sin θ cos θ),  δ_e = d [1 − (δ_max − δ)/(d + δ_R)]
-                The term δ_R < 0 corrects the recovery d for the finite size of the sphere:
-                δ_R = F_max [(1 − 2ν) z (s − z) − 2 (1 − ν) a²]/(2πGa²s),  z = R − δ_max + d,
+    unloading   An elliptical indenter of width 2a and height A = 4p_Ya/E* is pulled out of the
+                transformed half-space. The depth of the indenter falls from d_e = A/2 at full load
+                to δ_e = ½A(1 − cos θ):
+                F = ½E*Aa (θ − sin θ cos θ),  δ_e = d_e [1 − (δ_max − δ)/(d_e + δ_R)]
+                The elastic recovery of the sphere is d_e + δ_R, where δ_R < 0 is a correction for
+                the finite size of the sphere:
+                δ_R = F_max [(1 − 2ν) z (s − z) − 2 (1 − ν) a²]/(2πGa²s),  z = R − δ_max + d_e,
                 s² = a² + z²
-    work        W_u = (1 + δ_R/d) 8p_Y²a³/3E*;  W_l = ∫F dδ by quadrature
+    work        W_u = (1 + δ_R/d_e) 8p_Y²a³/3E*;  W_l = ∫F dδ by quadrature
     impact      ½ m V² = W_l, e² = W_u/W_l; the contact ends where F returns to zero
 
 The contact stays elastic up to a mean pressure of almost 2.75 Y (a peak of 4.1 Y) and is then fully
@@ -210,8 +212,8 @@ class MDR:
         """Coefficient of restitution of the sphere after an impact on the flat.
 
         Args:
-            velocity: Normal impact velocity V of the sphere (m/s); half the relative velocity of
-                two equal spheres.
+            velocity: Normal impact velocity V of the sphere (m/s). For two equal spheres, give half
+                of their relative velocity.
             mass: Mass m of the sphere (kg).
 
         Returns:

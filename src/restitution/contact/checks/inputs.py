@@ -75,7 +75,8 @@ def doubtful(contact: Contact, indentation: float) -> list[Finding]:
       usual range of this ratio, `low` to `high`;
     * `oblong-pixels`: `file`, and edges `x` and `y` of a pixel (m);
     * `coarser-than-scan`: grid `spacing` and pixel edge `pixel` (m) along an `axis`, x or y;
-    * `surface-notice`: `notice` from the provenance of a surface that differs from its scan.
+    * `surface-notice`: `notice`, a text from the provenance of the surface. It says how the
+      surface differs from the scan from which it was made.
 
     For a periodic contact, the findings that depend on the radius of the bodies are left out.
     """
@@ -108,7 +109,7 @@ def _coarse_range(contact: Contact) -> Finding | None:
 
 def _tilt(contact: Contact) -> Finding | None:
     surface = contact.surface
-    # The provenance of a composite has one entry for each part.
+    # The provenance of a sum of surfaces stores the levelling of each of them under its own key.
     levelled = {value for key, value in surface.provenance.items() if key.endswith("levelling")}
     if not levelled & {"none", "center"}:
         return None

@@ -121,8 +121,9 @@ def expected_pull_off_error(contact: Contact) -> float:
 def coarse_scan(contact: Contact, indentation: float) -> Finding | None:
     """Return the finding `pixel-above-contact` if a pixel of a scan exceeds the contact radius.
 
-    The values of the finding are the `file`; `pixel`, which is the larger one of pixel and grid
-    spacing (m); the `indentation` (m); and the contact `radius` (m) at this indentation.
+    The values of the finding are the `file`, the `indentation` (m), the contact `radius` (m) at
+    this indentation, and `pixel` (m). If the grid spacing is larger than the longest edge of a
+    pixel, `pixel` is the grid spacing instead.
     """
     provenance = contact.surface.provenance
     if "file" not in provenance:

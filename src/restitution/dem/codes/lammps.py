@@ -107,7 +107,8 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
 def _tangential(pair: Pair) -> str:
     """The tangential model of a pair.
 
-    If the case has no friction, the model has the full stiffness, which LAMMPS computes (NULL).
+    If the case has no friction, the model has Mindlin's full stiffness, which LAMMPS computes
+    (NULL). Otherwise the stiffness is `STIFFNESS_SHARE` times Mindlin's stiffness.
     """
     if pair.law.friction is None:
         return f"mindlin NULL 1.0 {pair.friction}"
@@ -118,9 +119,9 @@ def _tangential(pair: Pair) -> str:
 def _counts(table: PairTable) -> list[int]:
     """Number of spheres of each type, at least one; the sum is `_GRAINS`.
 
-    The numbers are proportional to the number fractions of the types, where a type without a number
-    fraction has the fraction 1. The fractions of the sizes of one material add up to 1, so all
-    materials of a mixture have the same number of spheres.
+    The numbers are proportional to the number fractions of the types. A type without a number
+    fraction has the fraction 1. The fractions of all sizes of a material add up to 1. Therefore,
+    all materials of a mixture have the same number of spheres.
     """
     weights = [body.number_fraction or 1.0 for body in table.spheres]
     ends = [round(_GRAINS * part / sum(weights)) for part in itertools.accumulate(weights)]

@@ -1,4 +1,7 @@
-"""Comments in the export to LAMMPS that offer the fitted `mdr` law to the pairs that can use it.
+"""Offer the fitted `mdr` law as an alternative in the comments of the export to LAMMPS.
+
+`mdr` is an elastic-plastic normal force law in LAMMPS (Zunker & Kamrin 2024). Only pairs that can
+use the law get such a comment.
 
 LAMMPS 22Jul2025 behaves as follows (`tests/dem/test_lammps_mdr.py`). pair_style granular accepts
 one mdr model, with the same values for every pair of types, and no other normal model beside it. A
@@ -44,7 +47,10 @@ def _obstacle(pairs: list[Pair], pair: Pair) -> str:
 
 
 def _unfit(pair: Pair) -> str:
-    """Return the reason why the mdr fit of `pair` itself is not offered; empty if it is offered."""
+    """Return the reason why `pair` has no valid mdr fit; empty if it has one.
+
+    `_obstacle` adds the reasons that depend on other pairs.
+    """
     fit = pair.fitted(NAME)
     if fit is None and not pair.law.laws:
         return "no law was fitted to it"

@@ -3,10 +3,10 @@
 YADE adds the damping force 2β(m* dF/dδ)^½ dδ/dt to Hertz's force F at the overlap δ. The sum is
 never attractive, so a contact ends when the force returns to zero. YADE 2023.02a converts the
 coefficient of restitution `en` to β by a fit (Thornton et al., Powder Technol. 233 (2013) 30, eqs.
-B6, B7). This fit returns e = 0.979 for en = 0.99 and e = 0.948 for en = 0.95; other releases
-convert `en` differently. The export therefore writes β (`betan`), computed by a new fit to this
-equation of motion. The new fit is valid for e ≥ 0.01, and the resulting e differs by less than 10⁻⁵
-from the required e. With the coefficients c_k in `_FIT`, the fit is
+B6, B7). This fit returns e = 0.979 for en = 0.99 and e = 0.948 for en = 0.95. Other releases
+convert `en` differently. The export therefore writes β (`betan`). A new fit, based on the motion
+under the two forces, computes β from e. The new fit is valid for e ≥ 0.01, and the resulting e
+differs by less than 10⁻⁵ from the required e. With the coefficients c_k in `_FIT`, the fit is
 
     β = L exp(Σ c_k L^k),  L = −ln e.
 
