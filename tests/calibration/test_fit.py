@@ -127,7 +127,7 @@ def test_the_grid_is_refined_once_for_all_values(smooth_case):
 
 def test_fewer_points_than_parameters_are_refused(rough_case):
     one = Measured(np.array([0.1]), np.array([0.7]), np.array([0.01]))
-    with pytest.raises(CaseError, match="2 keys are more than the 1 measured points"):
+    with pytest.raises(CaseError, match="1 measured point cannot determine 2 keys"):
         fit(rough_case("1 GPa", "0.05 um"), Path(), one, ["rms", "yield_pressure"])
     bare = Measured(np.array([0.05, 0.1]), np.array([0.8, 0.7]), None)
     with pytest.raises(CaseError, match="add the column restitution_std"):

@@ -23,6 +23,7 @@ from restitution.calibration.model import Array, CaseModel
 from restitution.calibration.parameters import Parameter, free_parameters
 from restitution.calibration.uncertainty import Deviations, Uncertainty
 from restitution.case.case_file import parse_case, parse_toml
+from restitution.display import counted
 from restitution.errors import CaseError, RestitutionError
 from restitution.runs.log import Say, ignore
 from restitution.runs.refinement import settled
@@ -139,8 +140,8 @@ def _check_points(measured: Measured, parameters: int) -> None:
     points = measured.velocity.size
     if points < parameters:
         raise CaseError(
-            f"--free: {points} measured points cannot determine {parameters} keys; measure more "
-            "points, or free fewer keys"
+            f"--free: {counted(points, 'measured point')} cannot determine "
+            f"{counted(parameters, 'key')}; measure more points, or free fewer keys"
         )
     if points == parameters and measured.deviation is None:
         raise CaseError(

@@ -94,7 +94,7 @@ class Pair:
 
     @property
     def yield_coefficient(self) -> float:
-        """`theory.yield_coefficient` at the mean Poisson's ratio of the bodies.
+        """`theory.yield_coefficient` at the mean Poisson's ratio of the bodies (dimensionless).
 
         Smooth bodies first yield where the largest pressure is this number times the yield
         strength.
