@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from restitution import theory
+from restitution.case.derived import derived_quantities
 from restitution.errors import CaseError, OutputError
 from restitution.laws import theories as room
 from restitution.laws.law_files import write_theories
@@ -46,6 +47,16 @@ def test_hertz_loses_nothing_until_something_yields():
     R, E, m = bodies(case)
     V_y = FirstYield(R, E, 560e6).velocity(m)
     same_within(by_name(case)["hertz"].restitution, np.ones_like(V), V_y >= V)
+
+
+def test_hertz_and_check_use_the_same_yield_velocity(tmp_path):
+    case = case_of(interface='yield_strength = "200 MPa"\n')
+    V_y = derived_quantities(case, case.contact(tmp_path))["yield_velocity_m_per_s"]
+    assert room.marks(case)["V_y"] == approx(V_y, rel=1e-12)
+    V = np.array([0.999, 1.001]) * V_y
+    (hertz,) = (each for each in room.theories(case, V) if each.name == "hertz")
+    assert hertz.restitution[0] == 1
+    assert np.isnan(hertz.restitution[1])
 
 
 def test_hertz_ends_where_the_contact_is_no_longer_small():

@@ -251,8 +251,8 @@ def _provenance(
         f"{scan.provenance.get('file', 'the scan')}: the surface is a statistical twin (seed "
         f"{seed}) of the scan of {edges}, not the scan itself: Rq "
         f"{1e9 * float(np.std(made.height)):.4g} instead of {1e9 * statistics['scan_Sq_m']:.4g} "
-        f"nm, rms slope {slope:.3g} instead of {rms_slope(scan):.3g}, spectrum within {misfit:.0%} "
-        "of the scan's"
+        f"nm, rms slope {slope:.3g} instead of {rms_slope(scan):.3g}, rms difference of the "
+        f"spectra {misfit:.0%} (usually 10% to 20%)"
     )
     if removed["removed_slope"] > 0:
         notice += (
