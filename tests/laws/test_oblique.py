@@ -240,7 +240,7 @@ def test_a_pair_with_adhesion_is_refused(refused, tmp_path):
     with warnings.catch_warnings(action="ignore"):
         run(case, out=tmp_path / "out")
     given = ["simulate", tmp_path / "out", "--velocity", "0.05 m/s", "--friction", "0.2"]
-    assert "without adhesion only" in refused(*given, "--angle", "30 deg")
+    assert "only for pairs without adhesion" in refused(*given, "--angle", "30 deg")
 
 
 def test_the_command_line(cli, refused, computed_yielding, tmp_path):

@@ -131,7 +131,7 @@ def test_without_a_depth_there_are_no_results(tmp_path):
     [
         ("periodic = true", "periodic = false", r"add periodic = true to \[grid\]"),
         ('radius = "flat"', 'radius = "1 mm"', 'first.radius: must be "flat"'),
-        (PRESSURE, '[impact]\nvelocity = "1 m/s"\n', "have no mass"),
+        (PRESSURE, '[impact]\nvelocity = "1 m/s"\n', "have infinite mass"),
         ("[grid]", "[unloading]\n[grid]", r"\[unloading\]: a periodic case"),
         ("[roughness]", 'work_of_adhesion = "0.1 J/m^2"\n[roughness]', r"needs \[indentation\]"),
         (

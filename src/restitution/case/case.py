@@ -92,8 +92,8 @@ class Case(Table):
                 raise ValueError(f'{name}.radius: must be "flat" if the grid is periodic')
         if self.impact is not None:
             raise ValueError(
-                "[impact]: the bodies of a periodic contact have no mass; give [indentation], "
-                "[load] or [pressure]"
+                "[impact]: the bodies of a periodic contact have infinite mass; give "
+                "[indentation], [load] or [pressure]"
             )
         if "unloading" in self.model_fields_set:
             raise ValueError(

@@ -3,9 +3,10 @@
 The modules of `restitution.theory` state the ranges. Outside the range of a theory, this module
 returns NaN, even if the formula gives a number. No theory includes roughness.
 
-The theories describe yielding by one of two quantities. Hertz, sticking and Thornton–Ning use p_y,
-the contact pressure at yield, from the case. The other theories use the yield strength Y of a
-tensile test. If both bodies have a `yield_strength`, Y is the smaller one; otherwise Y = p_y/2.8.
+The theories describe yielding by one of three quantities. Hertz and sticking end at the pressure of
+first yield (`onset`). Thornton–Ning uses p_y, the pressure of a fully plastic contact. The other
+theories use the yield strength Y of a tensile test. If both bodies have a `yield_strength` and the
+interface has none, Y is the smaller one; otherwise Y = p_y/2.8.
 
 All units are SI. Arrays of velocities and of the coefficient of restitution e have the same shape.
 """
@@ -35,7 +36,7 @@ from restitution.theory import (
 Array = NDArray[np.float64]
 
 STRENGTHS = 2.8
-"""Ratio p_y/Y of contact pressure at yield to yield strength, assumed if Y is not given."""
+"""Ratio p_y/Y of the pressure of a fully plastic contact to the yield strength."""
 
 _SMALL = 0.01  # largest ratio of indentation to R* for which Hertz's theory is used
 _JOHNSON = 0.6  # largest e for which Johnson's formula is used
@@ -68,7 +69,8 @@ class Bodies:
     wall: int | None  # which body is flat (0 or 1); None for two spheres
     equal: bool  # two identical spheres
     sphere_poisson: float
-    strengths: tuple[float, float] | None  # Y of both bodies; None unless both have one
+    # Yield strengths Y of both bodies. None if one is missing, or if the interface overrides them.
+    strengths: tuple[float, float] | None
     labels: tuple[str, str]
     separation: float  # equilibrium separation of the surface forces (m)
 
@@ -143,7 +145,7 @@ class Bodies:
 
     @property
     def strength(self) -> float:
-        """Yield strength Y (Pa) of the softer body; p_y/2.8 unless both bodies have one."""
+        """The smaller yield strength Y (Pa) of the two bodies; p_y/2.8 if `strengths` is None."""
         return self.p_y / STRENGTHS if self.strengths is None else min(self.strengths)
 
     @property
@@ -156,7 +158,10 @@ class Bodies:
 
     @property
     def yielding_wall(self) -> bool | None:
-        """Whether the wall is softer than the sphere; None if unknown, or if there is no wall."""
+        """Whether the wall has a smaller yield strength than the sphere.
+
+        None if the case has no wall, if `strengths` is None, or if both strengths are equal.
+        """
         if self.wall is None or self.strengths is None or self.strengths[0] == self.strengths[1]:
             return None
         return self.strengths[self.wall] == self.strength

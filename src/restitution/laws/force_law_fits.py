@@ -1,10 +1,11 @@
 """Force laws of DEM codes, fitted to a computed law.
 
-Each force law is fitted to COR by least squares over the resolved points. COR does not determine
-the loading stiffness of spring models. This stiffness is chosen such that the maximum forces of the
-model agree with the computed ones in the geometric mean over the points. The duration and depth of
-contacts then agree on average, too. The parameters of a fitted law are stored together with its COR
-at every point.
+The fits use the resolved points, which are the impact velocities at which the grid resolves the
+contact. The force laws are fitted to COR by least squares, except `thornton-ning-force`, which is
+fitted to the maximum forces. COR does not determine the loading stiffness of spring models. This
+stiffness is chosen such that the model and the computation have the same geometric mean of the
+maximum forces. The duration and depth of contacts then agree on average, too. The parameters of a
+fitted law are stored together with its COR at the points.
 """
 
 from __future__ import annotations

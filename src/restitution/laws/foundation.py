@@ -10,9 +10,11 @@ contact radius a(δ) = F′(δ)/2E*. A sticking spring is displaced with the bod
 
 For a sphere, g = x²/R*, and the foundation is exact: it gives Hertz's force, and Cattaneo's and
 Mindlin's tangential force for every history (Popov and Heß 2015, Method of Dimensionality
-Reduction, chapters 3 and 5). For other elastic contacts, µ times the difference of two normal
-forces is a good approximation of the tangential force (Jäger 1995, Arch. Appl. Mech. 65, 478–487;
-Ciavarella 1998, Int. J. Solids Struct. 35, 2349–2378).
+Reduction, chapters 3 and 5). For other elastic contacts, the tangential force of the foundation
+is a good approximation. If the bodies are first pressed together and then displaced tangentially,
+this force is µ [F(δ) − F(δ_s)]. Here δ_s < δ is the indentation at which the contact area equals
+the present sticking area (Jäger 1995, Arch. Appl. Mech. 65, 478–487; Ciavarella 1998, Int. J.
+Solids Struct. 35, 2349–2378).
 
 A contact that has yielded responds to small motions elastically, as on its unloading curve. At
 every depth of loading, the normal loads of the springs are therefore computed from the unloading

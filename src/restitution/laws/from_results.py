@@ -33,10 +33,11 @@ def law_of(out: Path, begin: Begin | None = None) -> Law:
 def bare_law(out: Path) -> Law:
     """Make the law of the results in the folder `out`, without fits.
 
-    The law of an ensemble is that of its mean curve, and its errors include the confidence interval
-    of the mean. The errors from a convergence study include the error of the grid. Depths with a
-    negative loading work (because of adhesion) have no impact velocity and are left out. Raises
-    `OutputError` if the folder holds no run, and `CaseError` if no depth has an impact velocity.
+    The law of an ensemble contains the means over its surfaces, and its errors include the
+    confidence interval of the mean. The errors from a convergence study include the error of the
+    grid. Depths with a negative loading work (because of adhesion) have no impact velocity and are
+    left out. Raises `OutputError` if the folder holds no run, and `CaseError` if no depth has an
+    impact velocity.
     """
     run = _read(out)
     try:
@@ -171,7 +172,8 @@ def _points(run: RunResults) -> list[Point]:
 def _ratio(row: _Row, work: float, *, means: bool) -> float:
     """Ratio of unloading to loading work.
 
-    For means over surfaces, the ratio is e² if e > 0, so that it agrees with the mean COR.
+    If `means` is true, the row contains means over surfaces. The ratio is then the square of the
+    mean COR, so that both agree. If the mean COR is 0, the ratio of the mean works is returned.
     """
     ratio, e = row["unloading_work_J"] / work, row["restitution"]
     return e * e if means and e > 0 else ratio

@@ -1,11 +1,11 @@
 """Closed forms for impacts in which the whole contact slides from the beginning to the end.
 
-The bodies meet at the angle θ from the normal, with the tangential velocity V_t and the normal
-velocity V_n. e is the normal restitution, µ the coefficient of friction, E* the contact modulus and
-G* the tangential modulus. In the foundation (`foundation`), a spring that slides has the
-displacement µ (E*/G*)(δ − g), where δ is the indentation and g the indentation at which this spring
-touches. The spring continues to slide as long as the velocity U of the contact point exceeds the
-rate of this displacement:
+The bodies meet without spin, at the angle θ from the normal, with the tangential velocity V_t and
+the normal velocity V_n. e is the normal restitution, µ the coefficient of friction, E* the contact
+modulus and G* the tangential modulus. In the foundation (`foundation`), a spring that slides has
+the displacement µ (E*/G*)(δ − g), where δ is the indentation and g the indentation at which this
+spring touches. The spring continues to slide as long as the velocity U of the contact point exceeds
+the rate of this displacement:
 
     U > µ (E*/G*) dδ/dt.
 

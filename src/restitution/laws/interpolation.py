@@ -5,15 +5,16 @@
 W_u and W_l are the works of unloading and loading, V is the impact velocity and V_s the sticking
 velocity. A monotone cubic (PCHIP) interpolates q. The term s/V² is the loss by adhesion, an energy
 that is about the same at every velocity (s = V_s² for an elastic pair: Thornton & Ning 1998). The
-value of s makes q equal at the two lowest velocities. If this value is negative, or without
-adhesion, s is zero. The pair rebounds above the velocity at which the interpolated ratio is zero.
+value of s makes q equal at the two lowest velocities. If this value is negative, or if the pair
+does not adhere, s is zero. The pair rebounds above the velocity at which the interpolated ratio is
+zero.
 
 The error estimate at the middle of an interval is 1.5 times the larger leave-one-out residual of
-the two end points, and at least the difference between the cubic and linear interpolation. With
-only two points, it is the difference between their values. Towards the end points, the estimate
-decreases to zero as 2 (t (1 − t))^½, where t (0 to 1) is the position of ln V in the interval. The
-standard deviation of a random walk with both ends fixed has the same form. For rough surfaces,
-docs/dem.md states how often the true error is within the estimate.
+the two end points, and at least the difference between the cubic and linear interpolation. If the
+curve has only two points, the estimate is the difference between their values of q. Towards the end
+points, the estimate decreases to zero as 2 (t (1 − t))^½, where t (0 to 1) is the position of ln V
+in the interval. The standard deviation of a random walk with both ends fixed has the same form. For
+rough surfaces, docs/dem.md states how often the true error is within the estimate.
 """
 
 from __future__ import annotations
@@ -103,5 +104,6 @@ class RatioCurve:
 def _pchip(x: Array, y: Array, at: float) -> float:
     from scipy.interpolate import PchipInterpolator
 
-    with np.errstate(over="ignore"):  # 1/slope overflows for slopes of 1e-308; PCHIP then uses 0
+    # PCHIP computes 1/slope, which overflows for slopes of 1e-308. The derivative is then set to 0.
+    with np.errstate(over="ignore"):
         return float(y[0]) if x.size == 1 else float(PchipInterpolator(x, y)(at))

@@ -22,8 +22,8 @@ Array = NDArray[np.float64]
 
 LOSS = 1e-3
 """A law is not fitted if e, or 1 − e, is below this value at every velocity."""
-# Largest relative difference of velocities that count as equal. If the loading work is integrated,
-# a run matches the velocities of its case only to within 1e-4 (`solve_at_velocity`).
+# Largest relative difference of velocities that count as equal. If a run integrates the loading
+# work numerically, it reaches the velocities of its case only to within 1e-4 (`solve_at_velocity`).
 _SAME = 1.01e-4
 
 
@@ -66,7 +66,7 @@ class Point(_Stored):
 
     `ratio` is W_u/W_l, the unloading work divided by the loading work, and negative if the pair
     sticks. `error` is the error of `restitution`. `indentation` and `force` are the maxima during
-    the impact.
+    the impact. `resolved` says whether the grid is fine enough for the contact and its adhesion.
     """
 
     velocity: Positive
@@ -96,8 +96,8 @@ class CompactFit(_Stored):
     this range the fit has no value.
 
     `worst` is the largest difference between fitted and computed e at the resolved points.
-    `between` is the largest such difference at a point that was left out of the fit, and at least
-    `worst`.
+    `between` estimates the largest error between these points. It is the larger of `worst` and the
+    largest leave-one-out residual of e.
     """
 
     coefficients: tuple[float, ...]

@@ -1,7 +1,7 @@
 """Oblique impact: tangential rebound, spin and friction loss from the stored normal curves.
 
-The normal motion does not depend on the tangential motion: it is that of a head-on impact at the
-normal velocity (`time_integration`). The contact point slides with the velocity
+The normal motion does not depend on the tangential motion. It equals the motion in a head-on impact
+at the normal velocity (`time_integration`). The contact point slides with the velocity
 
     U = v_t − R₁ω₁ − R₂ω₂,   dU/dt = −(7/2) T/m*,   dv_t/dt = −T/m*,   dω_i/dt = (5/2) T/(m_i R_i)
 
@@ -73,7 +73,8 @@ class ObliqueCollision:
         normal_force: Normal force (N).
         tangential_force: Tangential force (N).
         slip_velocity: Relative tangential velocity of the surfaces at the contact (m/s).
-        sticking: Fraction of the normal force on sticking springs (dimensionless).
+        sticking: Normal load of the sticking springs, divided by the normal load of all springs
+            (dimensionless).
     """
 
     velocity: float
@@ -208,7 +209,7 @@ def oblique_force(run: RunResults, key: str = "angle") -> StoredForce:
         OutputError: The run has no unloading curves, or a file is damaged.
     """
     if run.case.interface.adhesive_energy > 0:
-        raise CaseError(f"{key}: oblique impacts are computed for pairs without adhesion only")
+        raise CaseError(f"{key}: oblique impacts are computed only for pairs without adhesion")
     return stored_force(run.folder)
 
 

@@ -4,13 +4,13 @@ docs/oblique.md describes the comparison (`docs/studies/tangential.py` and `unli
 of equal materials with Poisson's ratio 0, the law is exact with any roughness, as long as the
 bodies do not yield. Four effects cause an error:
 
-* Contact patches that are not round. Under a point load along x, the displacement at a given
-  distance is 1 + χ times its mean over all directions on the x axis, and 1 − χ times on the y axis,
-  with χ = ν/(2 − ν) for equal materials with Poisson's ratio ν. The law uses the mean, so its
-  stiffness has an error of up to χ for a line contact. The patches of a rough contact are elongated
-  in random directions, so the error is inversely proportional to the square root of their number.
-  On a surface with a lay (a preferred direction) the patches are aligned, and the error decreases
-  less.
+* Contact patches that are not round. A point load along x displaces the points of a circle around
+  the load by different amounts. On the x axis, the displacement is 1 + χ times its mean over the
+  circle. On the y axis, the displacement is 1 − χ times this mean. For equal materials with
+  Poisson's ratio ν, χ = ν/(2 − ν). The law uses the mean, so its stiffness has an error of up to χ
+  for a line contact. The patches of a rough contact are elongated in random directions, so the
+  error is inversely proportional to the square root of their number. On a surface with a lay (a
+  preferred direction) the patches are aligned, and the error decreases less.
 * Yield. At nodes that have reached the pressure bound, the friction limit stays constant during
   further loading. In the law, the friction limits of all springs increase.
 * Few unloading curves. Between two unloading curves, the stiffness is interpolated.
@@ -20,9 +20,10 @@ bodies do not yield. Four effects cause an error:
   55–80). But if the coefficient of friction µ is not large compared with |β|, the surfaces slip
   radially under pressure alone (Spence 1975, J. Elast. 5, 297–319). Friction that opposes this
   radial slip cannot also resist a tangential motion. Solutions that include the radial slip were
-  compared with the law. The difference of the impulse was that of a relative change of the
-  stiffness by less than |β| if µ < |β|, and by less than |β|³/µ² for larger µ. In full slip the
-  radial slip turns the friction away from the direction of motion, so the impulse is smaller.
+  compared with the law. A relative change of the stiffness in the law would cause the same
+  difference of the impulse. This change is less than |β| if µ < |β|, and less than |β|³/µ² if µ is
+  larger. In full slip the radial slip turns the friction away from the direction of motion, so the
+  impulse is smaller.
 """
 
 from __future__ import annotations
@@ -95,7 +96,7 @@ def tangential_error(law: StoredForce, deepest: float, friction: float) -> Tange
 def dundurs(pair: Pair) -> float:
     """Dundurs' second constant β of a pair (dimensionless), zero for equal materials.
 
-    β = [(1 − 2ν₁)/G₁ − (1 − 2ν₂)/G₂]/2[(1 − ν₁)/G₁ + (1 − ν₂)/G₂] (Johnson 1985, eq. 5.3).
+    β = ½ [(1 − 2ν₁)/G₁ − (1 − 2ν₂)/G₂]/[(1 − ν₁)/G₁ + (1 − ν₂)/G₂] (Johnson 1985, eq. 5.3).
     """
     (first, one), (second, two) = (
         (body.poissons_ratio, (1 + body.poissons_ratio) / body.youngs_modulus)

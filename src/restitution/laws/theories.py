@@ -198,7 +198,10 @@ def _unresolved(law: Law) -> str:
 
 
 def _other_interface(bodies: Bodies, law: Law) -> str:
-    """Describe the yield pressure and the adhesion of the law where the case has other values."""
+    """State the yield pressure and the work of adhesion of `law`, each only if the case differs.
+
+    `bodies` are the bodies of the case. The result is empty if both values agree.
+    """
     differing = []
     p_y = math.inf if law.yield_pressure is None else law.yield_pressure
     if not math.isclose(p_y, bodies.p_y, rel_tol=_SAME):

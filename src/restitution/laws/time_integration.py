@@ -4,8 +4,9 @@
 
 x'' is an acceleration; v and v' are the velocities before and after the impact. F follows the
 loading curve until the particles stop approaching. Then F follows the unloading curve from the
-largest indentation. The resulting e is a check of two things: of the stored unloading work, against
-the unloading forces, and of the formula for e from energies, against an equation of motion.
+largest indentation. The resulting e checks two results. The stored unloading work is checked
+against the unloading forces. The formula for e from energies is checked against an equation of
+motion.
 
 The loading force is the derivative of a cubic Hermite spline through the stored loading work W. At
 the stored depths, the slope of the spline is the stored force. The particles therefore stop
@@ -44,8 +45,8 @@ Force = Callable[[float], float]
 _RTOL = 1e-10
 # Because of integration errors, an impact may exceed the deepest stored depth by this fraction.
 _SLACK = 1e-3
-# Largest accepted exponent n in W ∝ δⁿ, where W is the loading work. For larger n, adhesion nearly
-# cancels W.
+# ln W is interpolated against ln δ only if the exponent n in W ∝ δⁿ is below this value (W is the
+# loading work). A larger n means that adhesion nearly cancels W.
 _STEEPEST = 6.0
 _SAME = 1e-5  # largest relative difference of depths that count as equal
 
@@ -132,7 +133,7 @@ class StoredForce:
 
         The shape is F/F_max as a function of (δ − δ_s)/(δ_max − δ_s); the module docstring defines
         these symbols. The flag says whether the shape is interpolated between two stored curves. If
-        `deepest` is outside the stored depths, the shape is that of the nearest curve.
+        `deepest` is outside the stored depths, the nearest stored curve gives the shape.
         """
         depths = self.unloading_from
         near = np.flatnonzero(np.abs(depths / deepest - 1) < _SAME)
@@ -275,7 +276,7 @@ def course(collision: ReferenceCollision) -> list[dict[str, float]]:
 
 
 def table_rows(columns: Mapping[str, Array | float]) -> list[dict[str, float]]:
-    """Convert columns of equal length to table rows; every row contains the same single numbers."""
+    """Convert columns of equal length to table rows. A single number is repeated in every row."""
     values = [column.tolist() for column in np.broadcast_arrays(*columns.values())]
     return [dict(zip(columns, row, strict=True)) for row in zip(*values, strict=True)]
 

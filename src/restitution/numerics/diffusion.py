@@ -15,7 +15,8 @@ def diffuse(neighbours: NDArray[np.intp], weights: Array, steps: int, values: Ar
     """Replace the two values at each node by weighted sums over its neighbours, `steps` times.
 
     `neighbours` (node indices) and `weights` have shape (nodes, neighbours). `values` has shape
-    (nodes, 2) and is overwritten. Raises `IndexError` if an index is not that of a node.
+    (nodes, 2) and is overwritten. The indices run from 0 to nodes − 1; a larger index raises
+    `IndexError`.
     """
     for _ in range(steps):
         values[...] = np.einsum("ij,ijk->ik", weights, values[neighbours])

@@ -31,7 +31,9 @@ Result = TypeVar("Result")
 
 
 def _load() -> tuple[Any, str]:
-    """Return the compiled module and an empty text, or None and a text with a reason and a remedy.
+    """Return the compiled module and an empty text.
+
+    If no module is used, return None and a text that states the reason and a remedy.
 
     Raises `CaseError` if RESTITUTION_KERNELS names unknown kernels or kernels that cannot be
     loaded.

@@ -8,12 +8,14 @@ is K⁻¹ + diag(φ″).
 
 Each step of Newton's method is solved by conjugate gradients that stop at the boundary of a trust
 region or at negative curvature (Steihaug 1983, SIAM J. Numer. Anal. 20, 626–637). K is the
-preconditioner, so each direction is K times a sum of residuals. The product of the direction with
-K⁻¹ is this known sum, so an iteration takes only one product with K. The energy falls in every
-step, so the method descends from its start to a neighbouring minimum.
+preconditioner, so each direction is K times a sum of residuals. This sum is stored, because it is
+the product of K⁻¹ and the direction. So an iteration takes only one product with K. Apart from
+rounding errors, the energy falls in every accepted step. So the method descends from its start to
+a neighbouring minimum.
 
-With `zero_mean`, K maps constant arrays to zero. The minimum is then sought among all u of mean
-zero. The mean of p has no effect on u, and it is chosen so that the mean of the gradient is zero.
+If K maps constant arrays to zero (the option `zero_mean`), the minimum is sought among all u of
+mean zero. The mean of p then has no effect on u, and it is chosen so that the mean of the gradient
+is zero.
 """
 
 from __future__ import annotations

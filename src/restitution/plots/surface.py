@@ -34,7 +34,7 @@ def surface_map(surface: Surface, title: str = "") -> Figure:
 
 
 def height_distribution(density: HeightDensity, curve: MaterialRatio) -> Figure:
-    """Plot the density of heights, the normal density of equal Sq, and the material ratio."""
+    """Plot the density of heights, the normal density with the same Sq, and the material ratio."""
     x = 1e9 * density.height
     return Figure(
         "",

@@ -71,6 +71,6 @@ def smooth_curve(
             ("smooth_indentation", depths, "m", "maximum indentation"),
             ("smooth_force", force, "N", "normal force"),
             ("smooth_restitution", cor, "1", "coefficient of restitution"),
-            ("smooth_impact_velocity", velocity, "m s-1", "approach velocity"),
+            ("smooth_impact_velocity", velocity, "m s-1", "impact velocity"),
         )
     }

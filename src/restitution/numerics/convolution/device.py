@@ -75,7 +75,10 @@ class Device(Protocol):
 
 
 class _LibraryDevice:
-    """Device of an array library such as NumPy (`arrays`) and a module like scipy.fft (`fft`)."""
+    """Device that uses an array library and a module of transforms.
+
+    `arrays` is the array library, such as NumPy. `fft` is the module, such as scipy.fft.
+    """
 
     def __init__(self, name: str, arrays: Any, fft: Any) -> None:
         self.name = name
@@ -221,8 +224,8 @@ def _gpu() -> Device:
         cupy.cuda.Device().use()  # raises without a GPU
     except ImportError as error:
         raise CaseError(
-            f"device: gpu needs CuPy ({error}); install the extra gpu (in a checkout: "
-            '`pip install ".[gpu]"`), or use the device cpu'
+            f'device: gpu needs CuPy ({error}); install the package with its extra "gpu" '
+            '(in a checkout: `pip install ".[gpu]"`), or use the device cpu'
         ) from error
     except Exception as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__

@@ -5,9 +5,9 @@ For nodes (i, j) of a grid of shape (nx, ny), the linear convolution is
     u[i, j] = Σ_kl  K[|i − k|, |j − l|] p[k, l].
 
 Along an axis of n nodes, zero padding to any size ≥ 2n − 1 makes the circular convolution equal to
-the linear one (Liu, Wang and Liu 2000, Wear 243, 101–111, "DC-FFT"); kernel values at lags beyond
-n − 1 have no effect. The kernel is even along both axes. So its spectrum is real and equals the
-DCT-I of one quadrant, which takes a quarter of the storage.
+the linear one (Liu, Wang and Liu 2000, Wear 243, 101–111, "DC-FFT"). Kernel values at lags beyond
+n − 1 have no effect. The kernel is even along both axes. So its spectrum is real, and the DCT-I of
+one quadrant of the kernel gives one quadrant of the spectrum. Only this quadrant is stored.
 
 A periodic convolution needs no padding. Its kernel is given by its spectrum (`symbol`).
 """
@@ -96,7 +96,10 @@ class Convolution(_Spectral):
         return self._convolve(p, self._spectrum, out, 1.0)
 
     def single_precision(self, p: Array, out: Array | None = None) -> Array:
-        """Return K ∗ p computed in single precision; errors reach 9e-7 times the largest value."""
+        """Return K ∗ p computed in single precision.
+
+        Errors reach 9e-7 times the largest magnitude of the result.
+        """
         return self._convolve(p, self._single_spectrum, out, 1.0)
 
 
@@ -122,9 +125,9 @@ class PeriodicConvolution(Convolution):
     def __init__(self, symbol: Symbol, shape: tuple[int, int], device: Device = CPU) -> None:
         super().__init__(shape, shape, device)
         self._spectrum = _modes(symbol, shape, device)
-        # The kernel at lag (0, 0) is the sum over all modes. A mode of the quadrant stands for two
-        # modes along an axis, unless its wave number along this axis is zero or, if the number of
-        # nodes is even, the Nyquist wave number.
+        # The kernel at lag (0, 0) is the sum over all modes. Along each axis, a wave number of the
+        # quadrant stands for itself and its negative. Zero and the Nyquist wave number (n even)
+        # have no negative counterpart and count once.
         along = [1.0 + ((k > 0) & (2 * k != n)) for n in shape for k in [device.arange(n // 2 + 1)]]
         self.diagonal = float((along[1] @ self._spectrum) @ along[0])
         self._single_spectrum = self._spectrum.astype(np.float32)
@@ -160,7 +163,11 @@ class SpectralFilter(_Spectral):
 
 
 def _modes(symbol: Symbol, periods: tuple[int, int], device: Device) -> Array:
-    """Return `symbol` divided by the number of modes, transposed as `Device.convolve` expects."""
+    """Return one quadrant of the spectrum, divided by the number of all modes.
+
+    The function `symbol` returns the spectrum. The quadrant is transposed, as `Device.convolve`
+    expects.
+    """
     mx, my = periods
     i, j = device.arange(mx // 2 + 1)[None, :], device.arange(my // 2 + 1)[:, None]
     values = symbol(2 * np.pi / mx * i, 2 * np.pi / my * j)

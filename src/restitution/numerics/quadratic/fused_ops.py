@@ -72,7 +72,7 @@ def projected_direction(
     r: Array,
     bounds: Bounds,
 ) -> tuple[float, bool]:
-    """Replace the step d from p by `beta` d − `length` z, truncated at the bounds.
+    """Overwrite the step d with `beta` d − `length` z, truncated so that p + d is within bounds.
 
     The new step is zero at nodes that are not free (`projected_gradient`). Return r·d and whether a
     bound truncated the step at any node.
@@ -135,5 +135,5 @@ def _is_outside(p: Array, bounds: Bounds) -> bool:
 
 
 def _is_unbounded(upper: Bound) -> bool:
-    """Whether there is no upper bound at all, so that comparisons with it can be skipped."""
+    """Whether the upper bound is the number infinity; no comparison with p is then needed."""
     return isinstance(upper, float) and upper == np.inf

@@ -1,4 +1,8 @@
-"""Local means of an array over its nonzero nodes, around points of a coarse lattice ("places")."""
+"""Local means of an array, around the points of a coarse lattice ("places").
+
+A local mean is a weighted mean of the nonzero values near a place. The preconditioners of
+`multilevel` and `near_guess` damp the local means of the residual.
+"""
 
 from __future__ import annotations
 

@@ -105,32 +105,38 @@ def minimise_quadratic(
 ) -> Minimum:
     """Solve `problem` by projected, preconditioned conjugate gradients (Polak–Ribière+).
 
-    The search on the free nodes follows Polonsky and Keer (1999, Wear 231, 206–219) with bounds on
-    both sides and four changes. (1) The direction, with a trial length suggested by earlier steps,
-    is projected onto the bounds before the product with K, not after it. The step is the optimal
-    fraction of the projected direction, so an iteration takes one product and the energy always
-    falls. (2) The direction is not reset when nodes reach or leave a bound. Polak–Ribière's β is
-    limited to the range from zero to the β of Fletcher and Reeves (Gilbert and Nocedal 1992, SIAM
-    J. Optim. 2, 21–42). β decreases after a step that ends at a bound, because the length of such a
-    step is not optimal. (3) The projected gradient is preconditioned by an approximate inverse of
-    K. This inverse may be unsymmetric and may give an ascent direction. (4) If the preconditioned
-    gradient makes no progress, one step follows the gradient itself, so no solve stalls.
+    The search on the free nodes follows Polonsky and Keer (1999, Wear 231, 206–219), with bounds on
+    both sides and four changes:
+
+    1. The direction has a trial length, which follows from earlier steps. It is projected onto the
+       bounds before the product with K, not after it. Then it is scaled to its optimal length, as
+       far as the bounds allow. So an iteration takes one product, and no step raises the energy.
+    2. The direction is not reset when nodes reach or leave a bound. Polak–Ribière's β is limited to
+       the range from zero to the β of Fletcher and Reeves (Gilbert and Nocedal 1992, SIAM J. Optim.
+       2, 21–42). The direction includes the trial length, so β is then multiplied by the last
+       change of this length.
+    3. The projected gradient is preconditioned by an approximate inverse of K. This inverse may be
+       unsymmetric and may give an ascent direction.
+    4. If the preconditioned gradient makes no progress, one step follows the gradient itself. So
+       the solve does not stall.
 
     `start` is the initial point, shape (nx, ny), and is overwritten. `precondition` is an
     approximate inverse of K. `tolerance` limits the violation of the optimality conditions and has
-    the units of `b`. If `start` is within the bounds and the product of `K_single` and `start` is
-    known, give this product as `K_start`; it is overwritten. The final gradient is computed with K
-    at the final point. With `accept_estimated_gradient`, the gradient updated along the steps is
-    returned instead, if the violation plus the estimated error of this gradient is within
-    `tolerance`.
+    the units of `b`. With `mean_violation`, the violation is the root mean square of the nonzero
+    values of the projected gradient. Otherwise it is the largest magnitude of the projected
+    gradient.
 
-    The first gradient is computed with K, or with `K_single` if `K_start` is given or
-    `accept_estimated_gradient` is true. Each step updates the gradient by the product of K and the
-    step. The rounding errors of these products are added up in quadrature. When the violation is no
-    longer well above this sum, the gradient is computed with K again. With `mean_violation`, the
-    violation is the root mean square of the projected gradient over the nodes where it is not zero,
-    instead of its largest magnitude. If the solve does not converge, `converged` of the result is
-    False; no exception is raised.
+    The first gradient is computed with K, or with `K_single` if `accept_estimated_gradient` is
+    true. If `start` is within the bounds and the product of `K_single` and `start` is known, give
+    this product as `K_start`. The first gradient then uses `K_start` and overwrites it.
+
+    Each step updates the gradient by the product of K and the step. The error of this updated
+    gradient is the sum, in quadrature, of the estimated rounding errors of the products. The
+    gradient is computed with K again when the violation is within `tolerance` or no longer well
+    above this error. With `accept_estimated_gradient`, the updated gradient is final if the
+    violation plus its error is within `tolerance`. Without this option, the final gradient is
+    always computed with K at the final point. If the solve does not converge, `converged` of the
+    result is False; no exception is raised.
     """
     # Work arrays that only determine the direction have the same precision as the products.
     work_type: Any = np.float64 if problem.K_single is None else np.float32

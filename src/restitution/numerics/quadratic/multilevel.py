@@ -39,9 +39,9 @@ Mask = NDArray[np.bool_]
 # At level n the spacing is 2ⁿ times the spacing of the finest grid.
 Operators = Callable[[tuple[int, int], int], tuple[Convolution, SpectralFilter]]
 
-# The solve on a grid starts from a guess on the next coarser grid if the shorter edge of the grid
-# has at least this number of nodes: the first number for the finest grid, the second for coarser
-# grids. On smaller grids the guess costs more time than it saves.
+# Smallest number of nodes along the shorter edge of a grid for which the solve starts from a guess
+# on the next coarser grid. On smaller grids the guess costs more time than it saves. The first
+# number applies to the finest grid, and the second number to coarser grids.
 MIN_NODES_FOR_GUESS, _MIN_NODES_TO_COARSEN = 120, 80
 # Tolerance on coarser grids, as a fraction of the largest b. A smaller tolerance gains nothing,
 # because prolongation errors are larger.
@@ -55,14 +55,15 @@ _MAX_WINDOW_FRACTION = 0.7
 _PLACES = 8  # number of places along each axis for which local means are computed (`local_mean`)
 
 # In a nearly fully plastic contact, the gradient is used to correct the contact edge of a guess.
-# First number: the guess is corrected if at most this fraction of the contact nodes is strictly
-# between the bounds. Second number: size of the correction, as a fraction of the pressure which,
-# applied at one node alone, would make the gradient at that node zero. For the second number, any
-# value from 0.15 to 0.5 works nearly as well.
+# The guess is corrected if at most the fraction _MAX_FREE_FRACTION of the contact nodes is strictly
+# between the bounds. A pressure at one node alone could make the gradient at this node zero. The
+# correction is the fraction _GAP_FRACTION of this pressure. Any fraction from 0.15 to 0.5 works
+# nearly as well.
 _MAX_FREE_FRACTION, _GAP_FRACTION = 0.05, 0.3
-# The local mean is damped if the Rayleigh quotient of K·M on the free nodes (those strictly between
-# the bounds) exceeds the first number, where M is the approximate inverse of K. The second number
-# is the largest (weakest) damping factor that still saves time.
+# Let M be the approximate inverse of K. The damping factor of the local mean is _USUAL_STIFFNESS,
+# divided by the Rayleigh quotient of K·M for a constant on the free nodes (those strictly between
+# the bounds). The largest (weakest) damping factor that still saves time is _MAX_DAMPING_FACTOR. If
+# the factor is larger, the local mean is not damped.
 _USUAL_STIFFNESS, _MAX_DAMPING_FACTOR = 3.5, 0.7
 
 
@@ -79,11 +80,12 @@ def solve_multilevel(
 
     `operators` builds K and its approximate inverse. `b` has shape (nx, ny); `upper` is a number or
     an array of this shape. `tolerance` limits the violation of the optimality conditions and has
-    the units of `b`. `periodic` says that the operators are periodic: the fine problem is then
-    solved on the whole grid, and only grids of even size are coarsened. The approximate inverse of
-    a periodic operator is nearly exact, so it is used without damping. Return the result and the
-    number of products with K on the finest grid. If the solve does not converge, `converged` of the
-    result is False; no exception is raised.
+    the units of `b`. `periodic` states whether the operators are periodic. With periodic operators,
+    the fine problem is solved on the whole grid, and only grids of even size are coarsened. Their
+    approximate inverse is nearly exact, so it is used without damping.
+
+    Return the result and the number of products with K on the finest grid. If the solve does not
+    converge, `converged` of the result is False; no exception is raised.
     """
     whole_grid: Box = (slice(0, b.shape[0]), slice(0, b.shape[1]))
     size = shape_of(whole_grid)
@@ -114,7 +116,8 @@ def solve_multilevel(
             tolerance=tolerance,
             max_iterations=max_iterations,
             K_start=None if Kp is None else Kp[window],
-            # After the solve on a window, the check of all nodes computes the exact gradient.
+            # On a window, an estimated gradient is enough, because the later check of all nodes
+            # computes the gradient in double precision.
             accept_estimated_gradient=not whole,
         )
         if whole:
@@ -137,17 +140,18 @@ def solve_multilevel(
 
 
 def mean_damped_preconditioner(inverse: Operator, p: Array, b: Array, upper: Bound) -> Operator:
-    """Return `inverse` with a damped response to the local mean of its argument.
+    """Return `inverse`, preceded by a damping of the local means of its argument.
 
-    If `inverse` does not overestimate the response to a mean, it is returned without damping.
+    A residual that is constant on the contact nodes drops to zero at the contact edge. This drop
+    contains short waves. The inverse of a smoothing operator amplifies short waves, more so on
+    finer grids (McLean and Steinbach 1999, Adv. Comput. Math. 11, 271–286). So `inverse`
+    overestimates the response to a constant residual, by a factor of up to 30 on rough contacts.
+    Without damping, conjugate gradients must correct this error again whenever nodes reach or leave
+    a bound.
 
-    The mean of a residual is a field that is constant on the contact nodes and drops to zero at the
-    contact edge. The inverse of a smoothing operator amplifies the short waves of this drop, more
-    so on finer grids (McLean and Steinbach 1999, Adv. Comput. Math. 11, 271–286). So `inverse`
-    overestimates the response to this field, by up to 30 times on rough contacts. Conjugate
-    gradients would have to correct this error again whenever nodes reach or leave a bound. The
-    damping factor follows from the guess `p`, for which K p = b on the free nodes. Instead of one
-    mean over all nodes, local means around 8 × 8 points of a coarse lattice are damped.
+    The damping factor follows from the guess `p`, for which K p = b on the free nodes. The factor
+    is applied to local means around 8 × 8 points of a coarse lattice, not to one mean over all
+    nodes. If no damping is needed, the result is `inverse` itself.
     """
     factor = mean_damping(inverse, p, b, upper)
     if factor == 1.0:

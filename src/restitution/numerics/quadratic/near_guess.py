@@ -1,15 +1,16 @@
 """Approximate minimisation without upper bound, on a window around a guess from coarser grids.
 
-The problem is that of `multilevel` with an infinite upper bound: an elastic contact. Means over
-2 × 2 nodes hide the roughness between these nodes, so on a rough surface the coarser grid has far
-too many nodes in contact. But the mean pressure on this grid is nearly right. Therefore the short
-waves of the pressure are added to the guess, and then negative pressures are set to zero and the
-other pressures are lowered until the local means are again those of the coarser grid.
+The problem is that of `multilevel` with an infinite upper bound: an elastic contact. The coarser
+grid uses means over 2 × 2 nodes, and these means hide the roughness between the nodes. So on a
+rough surface, far too many nodes of the coarser grid are in contact. But the mean pressure on the
+coarser grid is nearly right. Therefore the short waves of the pressure are added to the guess, and
+negative pressures are set to zero. Then the positive pressures are lowered until the local means
+of the pressure are nearly the same as on the coarser grid.
 
-The local means are also protected during the iterations. The approximate inverse turns the
-residual of short waves on separate contact patches into a change of the mean pressure, which later
-iterations would have to undo. So the preconditioner damps the local means of its result as well as
-those of its argument (see `multilevel.mean_damped_preconditioner`).
+The preconditioner also protects the local means during the iterations. The approximate inverse
+turns the residual of short waves on separate contact patches into a change of the mean pressure.
+Later iterations would have to undo this change. So the preconditioner damps the local means of its
+argument (see `multilevel.mean_damped_preconditioner`) and the local means of its result.
 """
 
 from __future__ import annotations
@@ -56,11 +57,12 @@ def solve_near_guess(
     """Minimise ½ pᵀK p − pᵀb with 0 ≤ p approximately, on a window around a guess.
 
     The arguments are those of `solve_multilevel`, but `tolerance` limits the root mean square of
-    the violation, because the largest violation often occurs at a few nodes that hardly affect the
-    result. The window includes the nodes where the guess has pressure, and the nodes where the
-    bodies would overlap with the displacement of the coarser grid. The other nodes are neither
-    solved nor checked. Return the result on the window, the window, and the number of products with
-    K.
+    the violation. The largest violation often occurs at a few nodes that hardly affect the result.
+
+    The window includes the nodes where the guess has pressure. It also includes the nodes where the
+    bodies overlap if they are displaced as on the coarser grid. The other nodes are neither solved
+    nor checked. Return the result on the window, the window, and the number of products with K on
+    the window.
     """
     size = b.shape[0], b.shape[1]
     p, displacement, window = np.zeros_like(b), np.zeros_like(b), None

@@ -52,8 +52,8 @@ class MeanTarget:
     def tolerance(self, multiplier: float, slope: float) -> float:
         """Return the largest allowed violation of the optimality conditions, in the units of h.
 
-        `multiplier` is D, and `slope` is dD/dmean. A violation changes the mean by at most as much
-        as an equal change of D, so `slope` converts the tolerance of the mean to a violation.
+        `multiplier` is D, and `slope` is dD/dmean. A violation v changes the mean no more than a
+        change of D by v does. So `slope` converts the tolerance of the mean to a violation.
         """
         by_residual = self.residual * abs(multiplier - self.compliance * self.mean)
         return min(by_residual, _MEAN_SHARE * self.precision * self.mean * slope)
@@ -134,16 +134,20 @@ class _Bracket:
     """Secant steps to the root of an increasing function that is negative at zero."""
 
     def __init__(self, slope: float, least_slope: float) -> None:
-        """Begin with a guess `slope` of the slope dx/dy, which never falls below `least_slope`."""
+        """Start with `slope` as the estimate of dx/dy for the function y(x).
+
+        Later estimates are at least `least_slope`.
+        """
         self.slope = slope
         self._least_slope = least_slope
         self._low, self._high = 0.0, math.inf
         self._before: tuple[float, float] | None = None
 
     def following(self, x: float, y: float, uncertainty: float) -> float:
-        """Return the next argument to try after the function value `y` was found near `x`.
+        """Return the next argument to try.
 
-        `y` is the exact function value of a point within the distance `uncertainty` from `x`.
+        `y` is the latest function value. It belongs to an unknown point within the distance
+        `uncertainty` from the latest argument `x`.
         """
         if y > 0:
             self._high = min(self._high, x + uncertainty)
