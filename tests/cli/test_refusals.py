@@ -385,6 +385,12 @@ def test_a_misspelt_choice_is_refused_with_the_nearest_one(cli, arguments, words
     assert "Value error" not in said
 
 
+def test_a_misspelt_verb_is_refused_with_the_nearest_one(cli):
+    status, _, said = cli("rnu")
+    assert status == 2
+    assert "No such command 'rnu'. Did you mean 'run'?" in said
+
+
 def test_a_law_with_a_wrong_value_is_said_in_plain_words(tmp_path):
     from restitution.errors import CaseError
     from restitution.laws.law_files import read_law
