@@ -115,8 +115,8 @@ def test_a_law_is_made_and_exported(results, cli, tmp_path):
         assert files[0].read_text() == (tmp_path / "a" / "restitution.lmp").read_text()
     rs.export(law, to="yade", velocity=speed, out=tmp_path / "d")
     assert rs.export(law, to="csv", out=tmp_path / "e") == [tmp_path / "e" / "restitution.csv"]
-    with pytest.raises(rs.RestitutionError, match=r'to="fluent" is not one of lammps, .*'):
-        rs.export(law, to="fluent", out=tmp_path / "f")
+    with pytest.raises(rs.RestitutionError, match=r'to="lamps" .*; did you mean "lammps"\?'):
+        rs.export(law, to="lamps", out=tmp_path / "f")
 
 
 def test_the_library_of_materials():

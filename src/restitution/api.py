@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from restitution.errors import CaseError, OutputError
+from restitution.errors import CaseError, OutputError, not_one_of
 
 if TYPE_CHECKING:
     from restitution.case.case import Case
@@ -252,7 +252,7 @@ def export(
     from restitution.laws.law import Law, velocity_of
 
     if to not in CODES:
-        raise CaseError(f'to="{to}" is not one of {", ".join(CODES)}')
+        raise CaseError(f"to={not_one_of(to, CODES)}")
     given = [laws] if isinstance(laws, (str, os.PathLike, Law)) else laws
     read = [law for each in given for law in _laws_in(each)]
     speed = velocity_of(velocity) if isinstance(velocity, str) else velocity

@@ -4,6 +4,15 @@ Each message is one sentence. It names the key, file or quantity at fault, and t
 command line prints the message in red on one line and exits with status 1.
 """
 
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pydantic import ValidationError
+
 
 class RestitutionError(Exception):
     """A problem with the input or the computation; the message says what to change."""
@@ -36,9 +45,30 @@ class OutputError(RestitutionError):
     """A results folder or file is missing, damaged, not writable, or must not be overwritten."""
 
 
+def first_problem(error: ValidationError) -> str:
+    """Describe the first problem that pydantic found: the key, and what is wrong."""
+    first = error.errors(include_url=False)[0]
+    where = ".".join(map(str, first["loc"]))
+    why = first["msg"].removeprefix("Value error, ")
+    return f"{where}: {why}" if where else why
+
+
 def one_line(text: str) -> str:
     """Escape line breaks and other control characters in `text`, so that it stays on one line."""
     return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """Ask about the most similar word of `known`; return "" if no word is similar."""
+    near = difflib.get_close_matches(word, list(known), n=1)
+    return f'did you mean "{near[0]}"?' if near else ""
+
+
+def not_one_of(word: str, known: Iterable[str]) -> str:
+    """Describe a word that is not among the words `known`; suggest the most similar one."""
+    words = list(known)
+    hint = did_you_mean(word, words)
+    return f"{shown(word)} is not one of {', '.join(words)}{hint and f'; {hint}'}"
 
 
 def shown(value: object, limit: int = 60) -> str:

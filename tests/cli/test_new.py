@@ -1,10 +1,13 @@
 """`restitution new`: starting files that are valid, run, and never replace a file."""
 
+import re
+
 import numpy as np
 import pytest
 
 from restitution.case.case_file import read_case
 from restitution.sweeps.sweep import read_study
+from tolerance import approx
 
 
 def small(text):
@@ -54,13 +57,33 @@ def test_a_new_case_with_a_scan_asks_for_the_scan(cli, refused, tmp_path):
     file = tmp_path / "new.toml"
     assert cli("new", "--scan", "-o", file)[0] == 0
     assert "scan.npy: there is no such file" in refused("check", file)
-    assert file.read_text().count("# fill in") == 4
+    assert file.read_text().count("# fill in") == 5
     x = np.linspace(-50e-6, 50e-6, 100)
     scan = 20e-9 * np.cos(2e5 * x[:, None]) * np.cos(3e5 * x)
     np.save(tmp_path / "scan.npy", scan - (x[:, None] ** 2 + x**2) / 1e-3)
-    status, said, _ = cli("check", file)
+    status, said, warned = cli("check", file)
     assert status == 0
     assert "100 x 100" in said
+    assert "The case is valid." in said
+    assert not warned
+    status, said, warned = cli("run", file, "-o", tmp_path / "out")
+    assert status == 0, warned
+    assert "8 depths" in said
+    velocities = read_case(file)[0].impact.velocities()
+    assert (velocities[0], velocities[-1]) == approx((0.05, 1.0))
+
+
+def test_the_commented_lines_of_a_case_with_a_scan_are_valid(cli, tmp_path):
+    """With all lines, and a second scan, the case gives the yield strength and a grid."""
+    file = tmp_path / "new.toml"
+    cli("new", "--scan", "-o", file)
+    text = re.sub(r"^# (?=[a-z_]+ = |\[)", "", file.read_text(), flags=re.MULTILINE)
+    begin, end = text.index("[roughness]"), text.index("[grid]")
+    table = text[begin:end].replace("[roughness]", "[[roughness]]", 1)
+    file.write_text(text[:begin] + 2 * table + text[end:])
+    case = read_case(file)[0]
+    assert case.interface.yield_strength == approx(2030e6)
+    assert (len(case.roughness), case.grid.nodes) == (2, (256, 256))
 
 
 def test_a_new_file_has_a_name_of_its_own(cli, refused, tmp_path, monkeypatch):

@@ -370,6 +370,27 @@ def test_the_other_keys_that_are_wrong_are_named(refused_case):
     assert one.endswith("(also wrong: unloading.steps)")
 
 
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("export", "x", "-o", "y", "--to", "lamps"), 'mujoco, drake, csv; did you mean "lammps"?'),
+        (("run", "x", "-o", "y", "--device", "gpuu"), '"gpuu" is not one of cpu, gpu, auto; did'),
+        (("run", "x", "-o", "y", "--figures", "docx"), '"docx" is not one of png, svg, pdf '),
+    ],
+)
+def test_a_misspelt_choice_is_refused_with_the_nearest_one(cli, arguments, words):
+    status, _, said = cli(*arguments)
+    assert status == 2
+    assert words in said
+    assert "Value error" not in said
+
+
+def test_a_misspelt_verb_is_refused_with_the_nearest_one(cli):
+    status, _, said = cli("rnu")
+    assert status == 2
+    assert "No such command 'rnu'. Did you mean 'run'?" in said
+
+
 def test_a_law_with_a_wrong_value_is_said_in_plain_words(tmp_path):
     from restitution.errors import CaseError
     from restitution.laws.law_files import read_law

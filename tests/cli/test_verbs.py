@@ -147,7 +147,7 @@ def test_the_device_is_chosen_and_recorded(cli, case_text, tmp_path, monkeypatch
     assert json.loads((out / "summary.json").read_text())["device"] == "cpu"
     status, _, said = cli("run", case, "-o", tmp_path / "other", "--device", "tpu")
     assert status == 2
-    assert "'cpu', 'gpu', 'auto'" in said
+    assert '"tpu" is not one of cpu, gpu, auto' in said
 
 
 def test_run_under_prescribed_load(cli, case_text, tmp_path):

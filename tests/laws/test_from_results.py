@@ -72,6 +72,12 @@ def edited(run, folder, change, name="summary.json"):
     return folder
 
 
+def test_files_that_disagree_are_said_without_words_of_pydantic(run, tmp_path):
+    folder = edited(run, tmp_path / "x", lambda read: read["derived"].update(yield_pressure_Pa=-1))
+    with pytest.raises(OutputError, match=r"\(yield_pressure: Input should be [a-z ]* 0\); run"):
+        bare_law(folder)
+
+
 def test_the_bodies_are_those_of_the_case(run):
     law = bare_law(run)
     assert (law.first.name, law.second.name) == ("first", "steel")

@@ -1,6 +1,7 @@
 """Oblique impact: the tangential law against closed forms, energy and a measurement."""
 
 import math
+import re
 import warnings
 from dataclasses import replace
 
@@ -9,6 +10,7 @@ import pytest
 
 from elastic_force import ALUMINA, elastic
 from restitution import Pair
+from restitution.cli import console
 from restitution.errors import CaseError, DomainError
 from restitution.laws.foundation import Foundation
 from restitution.laws.oblique import collide_obliquely, course
@@ -249,13 +251,22 @@ def test_the_command_line(cli, refused, computed_yielding, tmp_path):
     _, said, _ = cli(
         *given, "--angle", "30 deg", "--angle", "60 deg", "--friction", "0.2", "-o", table
     )
-    assert "slides" in said
+    assert re.search(r" (full|part) *\n", said)
     assert "±: error of the tangential law" in said
     assert table.read_text().startswith("impact_velocity_m_per_s,angle_rad,time_s")
     assert "--friction: not given" in refused(*given, "--angle", "30 deg")
     assert "--angle" in refused(*given, "--friction", "0.2")
     assert "is not an angle" in refused(*given, "--friction", "0.2", "--angle", "30 m")
     assert "less than 90 degrees" in refused(*given, "--friction", "0.2", "--angle", "95 deg")
+
+
+def test_the_table_fits_into_80_columns(cli, computed_yielding, monkeypatch):
+    monkeypatch.setattr(console.answers, "_width", 80)
+    given = ["--velocity", "0.2 m/s", "--angle", "30 deg", "--friction", "0.2"]
+    _, said, _ = cli("simulate", computed_yielding, *given, "--spin", "-12345.6 rad/s")
+    head, units, row, _ = said.splitlines()
+    assert "…" not in said
+    assert max(map(len, (head, units, row))) <= 80
 
 
 def test_the_course_of_a_sliding_impact_is_that_of_coulomb(wall):

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from restitution.case.case_file import parse_case
+from restitution.cli import console
 from restitution.contact.bodies import Body, Pair
 from restitution.errors import CaseError, DomainError, NotConvergedError, OutputError
 from restitution.laws import time_integration
@@ -248,6 +249,17 @@ def test_the_verb(run, cli, refused, tmp_path):
     assert "has no unit" in refused("simulate", out, "--velocity", "1")
     assert "nothing" in refused("simulate", out, "--velocity", "1e-6 m/s")
     assert "holds no results" in refused("simulate", tmp_path)
+
+
+@pytest.mark.parametrize("columns", [80, 40])
+def test_no_number_of_the_table_is_cut(run, cli, monkeypatch, columns):
+    """At 80 columns the table fits; below, its lines are longer than the terminal is wide."""
+    out = run(**ROUGH, adhesion="", steps=4)
+    whole = cli("simulate", out)[1].splitlines()
+    monkeypatch.setattr(console.answers, "_width", columns)
+    lines = cli("simulate", out)[1].splitlines()
+    assert lines == whole
+    assert max(map(len, lines)) <= 80
 
 
 def test_a_restitution_above_one_is_printed_with_an_error_that_reaches_one(run, cli):

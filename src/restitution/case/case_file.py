@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 import stat
 import tomllib
@@ -16,7 +15,7 @@ from pydantic import ValidationError
 from restitution.case.case import Case
 from restitution.case.roughness import CropTable, GeneratedRoughness, MeasuredRoughness
 from restitution.case.schema import MOST_STEPS, Table
-from restitution.errors import CaseError, SurfaceError, shown
+from restitution.errors import CaseError, SurfaceError, did_you_mean, shown
 from restitution.surfaces.generate import RoughnessKind
 
 _LARGEST = 2**22  # largest size of a case file (bytes)
@@ -185,11 +184,8 @@ def _in_words(problem: Any, root: type[Table]) -> str:
     kind, context = problem["type"], problem.get("ctx", {})
     if kind == "extra_forbidden":
         known = _keys_of(keys[:-1], problem["loc"], root)
-        near = difflib.get_close_matches(keys[-1], known, n=1)
         hint = f"known keys: {', '.join(known)}" if known else "remove it"
-        if near:
-            hint = f'did you mean "{near[0]}"?'
-        return f"{key}: unknown key; {hint}"
+        return f"{key}: unknown key; {did_you_mean(keys[-1], known) or hint}"
     if kind == "missing":
         what = f"the table [{key}]" if len(keys) == 1 else f'the key "{key}"'
         return f"{what} is missing"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 import tomllib
 from functools import cache
@@ -14,7 +13,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from restitution.case.quantities import Density, Pressure
 from restitution.case.schema import Table
 from restitution.display import quantity, summary_html, summary_text
-from restitution.errors import CaseError, shown
+from restitution.errors import CaseError, did_you_mean, shown
 
 Quantity = TypeVar("Quantity", bound=float)
 PoissonsRatio = Annotated[float, Field(gt=-1, le=0.5)]
@@ -90,10 +89,9 @@ def material(name: str) -> Material:
     }
     if found := known.get(_plain(name)):
         return found
-    near = difflib.get_close_matches(_plain(name), known, n=1)
-    hint = f'did you mean "{near[0]}"? ' if near else ""
+    hint = did_you_mean(_plain(name), known)
     raise CaseError(
-        f"{shown(name)} is not a material of the library; {hint}"
+        f"{shown(name)} is not a material of the library; {hint}{' ' if hint else ''}"
         f"known materials: {', '.join(materials())}"
     )
 

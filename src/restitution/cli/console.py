@@ -5,6 +5,7 @@ from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
+from rich.cells import cell_len
 from rich.console import Console
 from rich.table import Column, Table
 
@@ -26,6 +27,15 @@ def table_of_numbers(*columns: str | Column) -> Table:
         for column in columns
     )
     return Table(*each, box=None, header_style="bold")
+
+
+def print_numbers(table: Table) -> None:
+    """Print a table of numbers. If it is wider than the terminal, its cells are not cut."""
+    for column in table.columns:
+        cells = column.header, *column.cells
+        lines = (line for cell in cells for line in str(cell).split("\n"))
+        column.min_width = max(map(cell_len, lines))
+    answers.print(table, crop=False)
 
 
 def warn(message: str) -> None:

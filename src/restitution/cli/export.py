@@ -6,6 +6,8 @@ from typing import Annotated
 
 import typer
 
+from restitution.cli.parameters import one_of
+
 # DEM codes and formats to which laws can be exported.
 Code = StrEnum(
     "Code", ["lammps", "liggghts", "yade", "mercurydpm", "edem", "mujoco", "drake", "csv"]
@@ -25,7 +27,7 @@ def export(
     ],
     to: Annotated[
         Code,
-        typer.Option(metavar="CODE", help=f"DEM code: {', '.join(Code)}.", show_default=False),
+        one_of(Code, metavar="CODE", help=f"DEM code: {', '.join(Code)}.", show_default=False),
     ],
     out: Annotated[
         Path,

@@ -6,9 +6,30 @@ Inputs are named by their content.
 
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+
+from restitution.errors import not_one_of
+
+
+def one_of(words: type[StrEnum], *names: str, **more: Any) -> Any:
+    """Make an option whose value is one of `words`; the error suggests the most similar word.
+
+    `more` contains further arguments of `typer.Option`.
+    """
+
+    def parse(text: str) -> StrEnum:
+        try:
+            return words(text)
+        except ValueError:
+            raise typer.BadParameter(not_one_of(text, words)) from None
+
+    def complete(incomplete: str) -> list[str]:
+        return [word for word in words if word.startswith(incomplete)]
+
+    more = {"metavar": f"<{'|'.join(words)}>", **more}
+    return typer.Option(*names, parser=parse, autocompletion=complete, **more)
 
 
 class Device(StrEnum):
@@ -39,11 +60,12 @@ OutFolder = Annotated[
 ]
 OnDevice = Annotated[
     Device,
-    typer.Option(
-        help="Device for the solves; auto uses a GPU if one is available. A GPU needs CuPy."
+    one_of(
+        Device,
+        help="Device for the solves; auto uses a GPU if one is available. A GPU needs CuPy.",
     ),
 ]
-Figures = Annotated[FigureFormat, typer.Option("--figures", help="Format of the figures.")]
+Figures = Annotated[FigureFormat, one_of(FigureFormat, "--figures", help="Format of the figures.")]
 Scheduler = Annotated[
     str | None,
     typer.Option(

@@ -38,6 +38,7 @@ def run_with_progress(
         command,
         errors,
         hint_at_kernels,
+        print_numbers,
         say,
         say_next,
         say_written,
@@ -70,7 +71,7 @@ def run_with_progress(
                 progress=lambda words: bar.update(task, advance=1, description=words),
                 warn=warn,
             )
-        answers.print(_curve(folder.rows))
+        print_numbers(_curve(folder.rows))
         many = f" of {runs(read)} curves" if runs(read) > 1 else ""
         residual = summary["diagnostics"]["largest_residual"]
         answers.print(

@@ -68,7 +68,7 @@ def simulate(
     the case gives an angle or a spin. VELOCITY is then the relative velocity of the centres, and
     the table contains the tangential restitution, the angle of rebound and the spins.
     """
-    from restitution.cli.console import answers, say_written, table_of_numbers
+    from restitution.cli.console import answers, print_numbers, say_written, table_of_numbers
     from restitution.laws.from_results import bare_law
     from restitution.laws.law import velocity_of
     from restitution.laws.time_integration import collide_in_time, course, stored_force
@@ -88,14 +88,7 @@ def simulate(
         if (abs(force.unloading_from / point.indentation - 1) < 1e-6).any()
     ]
     table = table_of_numbers(
-        "V (m/s)",
-        "COR",
-        "error",
-        "by energies",
-        "difference",
-        "time (s)",
-        "force (N)",
-        "depth (nm)",
+        "V (m/s)", "COR", "error", "by energies", "time (s)", "force (N)", "depth (nm)"
     )
     courses, blended = [], False
     for each in velocities:
@@ -109,7 +102,6 @@ def simulate(
             f"{found.restitution:.5f}",
             f"± {error:.5f}",
             f"{energies.restitution:.5f}",
-            f"{found.restitution - energies.restitution:+.5f}",
             f"{found.duration:.4g}",
             f"{found.largest_force:.4g}",
             f"{1e9 * found.largest_indentation:.4g}",
@@ -117,7 +109,7 @@ def simulate(
         blended |= found.blended
     if out is not None:
         write_table(out, courses)
-    answers.print(table)
+    print_numbers(table)
     if blended:
         answers.print(
             "Some collisions reverse at a depth between two stored unloading curves, so their "
@@ -137,7 +129,7 @@ def _oblique(
 ) -> None:
     """Compute oblique impacts at every velocity and angle, and print them as a table."""
     from restitution.case.quantities import read_impact_angle, read_quantity
-    from restitution.cli.console import answers, say, say_written, table_of_numbers
+    from restitution.cli.console import print_numbers, say, say_written, table_of_numbers
     from restitution.errors import CaseError
     from restitution.laws.law import velocity_of
     from restitution.laws.oblique import collide_obliquely, course, oblique_force
@@ -168,14 +160,14 @@ def _oblique(
     first, second = [*turning, 0.0, 0.0][:2]
     force = oblique_force(run, "--angle")
     table = table_of_numbers(
-        "V (m/s)",
-        "angle (°)",
+        "V\n(m/s)",
+        "angle\n(°)",
         "e_n",
         "e_t",
-        "rebound (°)",
-        "spins (rad/s)",
-        "loss (J)",
-        "",
+        "rebound\n(°)",
+        "spins\n(rad/s)",
+        "loss\n(J)",
+        "slip",
     )
     courses = []
     for speed in fast:
@@ -188,11 +180,11 @@ def _oblique(
                 f"{found.normal_restitution:.4f}",
                 f"{found.tangential_restitution:.3f} ± {found.tangential_restitution_error:.3f}",
                 f"{math.degrees(found.rebound_angle):.2f}",
-                ", ".join(f"{spin:.4g}" for spin in found.spins),
+                ", ".join(f"{spin:.5g}" for spin in found.spins),
                 f"{found.friction_loss:.4g}",
-                "slides" if found.sliding else "sticks in part",
+                "full" if found.sliding else "part",
             )
-    answers.print(table)
+    print_numbers(table)
     say(
         "loss: energy lost to friction. ±: error of the tangential law; errors of the normal "
         "forces and of the grid are not included."

@@ -9,7 +9,7 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from restitution.case.bodies import BodyTable
-from restitution.errors import CaseError, OutputError, one_line
+from restitution.errors import CaseError, OutputError, first_problem, one_line
 from restitution.laws.compact_fit import compact_fit
 from restitution.laws.force_law_fits import Begin, fitted_laws
 from restitution.laws.law import Conventions, Law, Particle, Point
@@ -42,11 +42,16 @@ def bare_law(out: Path) -> Law:
     run = _read(out)
     try:
         return _law(out, run)
-    except (KeyError, TypeError, ValidationError) as error:
-        raise OutputError(
-            f"{out}: its files do not belong together ({type(error).__name__}: "
-            f"{one_line(str(error))}); run the case again"
-        ) from None
+    except ValidationError as error:
+        raise _inconsistent(out, first_problem(error)) from None
+    except (KeyError, TypeError) as error:
+        raise _inconsistent(out, f"{type(error).__name__}: {error}") from None
+
+
+def _inconsistent(out: Path, why: str) -> OutputError:
+    return OutputError(
+        f"{out}: its files do not belong together ({one_line(why)}); run the case again"
+    )
 
 
 def _law(out: Path, run: RunResults) -> Law:

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 from pydantic import ValidationError
 
-from restitution.errors import CaseError, OutputError
+from restitution.errors import CaseError, OutputError, first_problem
 from restitution.laws.law import Array, Law
 from restitution.laws.theories import Theory
 from restitution.results.checksums import check_file
@@ -57,12 +57,9 @@ def read_law(folder: Path) -> Law:
     try:
         return Law.model_validate_json(text)
     except ValidationError as error:
-        first = error.errors()[0]
-        where = ".".join(map(str, first["loc"])) or "the whole file"
-        why = first["msg"].removeprefix("Value error, ")
         raise CaseError(
-            f"{path}: is not a law of this version ({where}: {why}); run `restitution fit-law` "
-            "again"
+            f"{path}: is not a law of this version ({first_problem(error)}); run `restitution "
+            "fit-law` again"
         ) from None
 
 

@@ -101,8 +101,7 @@ def _thinned(surface: Surface) -> Surface:
 class ContactMaps:
     """Coarse maps of pressure and plastic displacement at every depth of a curve."""
 
-    def __init__(self, contact: Contact) -> None:
-        self._down = contact.surface.provenance.get("y_axis") == "down"
+    def __init__(self) -> None:
         self._maps: list[tuple[float, Map, Map]] = []
 
     def add(self, state: State, indentation: float) -> None:
@@ -141,5 +140,5 @@ class ContactMaps:
             for each in zip(*((one.x, one.y) for _, one, _ in self._maps), strict=True)
         )
         plot.update_xaxes(range=x)
-        plot.update_yaxes(range=y[::-1] if self._down else y)
+        plot.update_yaxes(range=y)
         return Raw(plot.to_json())

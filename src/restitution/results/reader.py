@@ -19,7 +19,7 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, NonNegativeInt, 
 from restitution.case.case import Case
 from restitution.case.case_file import parse_case
 from restitution.display import counted, quantity, summary_html, summary_text
-from restitution.errors import CaseError, OutputError
+from restitution.errors import CaseError, OutputError, first_problem
 from restitution.results.checksums import check_file
 from restitution.results.interruption import hold_signals
 from restitution.results.schema import (
@@ -130,8 +130,7 @@ class RunResults:
         try:
             _Summary.model_validate_json(json.dumps(content))
         except ValidationError as error:
-            first = error.errors()[0]
-            raise damaged(path, f"{'.'.join(map(str, first['loc']))}: {first['msg']}") from None
+            raise damaged(path, first_problem(error)) from None
         return content
 
     @cached_property
