@@ -58,7 +58,8 @@ def surface(
     answers.print(table)
     for key, radius in provenance.items():
         if key.endswith("subtracted_radius_m"):
-            say(_curvature(str(provenance[key.replace("subtracted_radius_m", "file")]), radius))
+            file = provenance[key.replace("subtracted_radius_m", "file")]
+            say(_curvature(str(file), float(radius)))
     say_written(out, ["surface.nc", "statistics.json", picture.name, "surface.html"])
     say_next(command("run", case, "-o", "OUT"))
 
