@@ -168,8 +168,8 @@ def collide_obliquely(
         friction: Coefficient of friction (dimensionless). By default, the coefficient in the case
             of the run is used.
         spin: Spin before the impact: one value for the first body, or a pair of values for both
-            bodies. A value is a text such as "100 rad/s" or "20 rpm", or a number (rad/s). The
-            direction in which friction turns a body without spin is positive.
+            bodies. A value is a text such as "100 rad/s" or "20 rpm", or a number (rad/s). A spin
+            is positive in the direction in which friction turns a body without spin.
 
     Returns:
         The collision, with normal and tangential restitution, angle of rebound, spins, losses, and

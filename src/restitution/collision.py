@@ -125,7 +125,8 @@ def collide(
 
     With the estimate, the pull-off force and the indentation at separation are NaN. The estimate
     neglects the energy dissipated at detachment. Therefore, the error of W_u is set to wA. In all
-    comparisons with simulated unloading, wA exceeded this energy plus its error due to the grid.
+    comparisons with simulated unloading, wA exceeded the sum of the dissipated energy and its grid
+    error.
 
     Args:
         state: Deepest state of the collision, reached by loading.

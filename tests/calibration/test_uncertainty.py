@@ -65,6 +65,18 @@ def test_a_direction_without_effect_is_unbounded():
 
 
 def test_the_band_of_a_straight_line_is_that_of_its_parameters():
-    found = Uncertainty.of(J, S, deviations())
     at = np.array([[0.3, -0.4]])
-    assert found.band(at)[0] == approx(1.96 * math.sqrt((at @ found.covariance @ at.T)[0, 0]))
+    found = Uncertainty.of(J, S, deviations())
+    deviation = math.sqrt((at @ found.covariance @ at.T)[0, 0])
+    assert found.band(at)[0] == approx(1.959964 * deviation, rel=1e-5)
+    # Noise estimated with two degrees of freedom: Student's t instead of the normal distribution.
+    assert Uncertainty.of(J, S, deviations(freedom=2)).band(at)[0] == approx(
+        4.302653 * deviation, rel=1e-5
+    )
+
+
+def test_the_band_is_wide_where_no_point_determines_the_curve():
+    flat = Uncertainty.of(np.outer(J[:, 0], [1.0, 2.0]), S, deviations())
+    known, unknown = flat.band(np.array([[0.1, 0.2], [0.2, -0.1]]))
+    assert known == approx(1.959964 * 0.1 / np.linalg.norm(J[:, 0] / S), rel=1e-5)
+    assert unknown == 1.0

@@ -151,7 +151,7 @@ def _check_points(measured: Measured, parameters: int) -> None:
 
 
 def _deviations(model: CaseModel, x: Array, velocity: Array) -> Deviations:
-    """Compute the deviations of COR at `x`.
+    """Compute the deviations of COR from the mean curve of all surfaces at the parameters `x`.
 
     The field `random` contains the error of the solver, but not the noise of the measurements.
     """

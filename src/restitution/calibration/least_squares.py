@@ -116,9 +116,9 @@ def search(model: CaseModel, data: Data, start: Array, cost: Cost = "full") -> M
 def searches(
     model: CaseModel, data: Data, starts: Sequence[Array], cost: Cost = "full"
 ) -> Iterator[Minimum]:
-    """Search from each of `starts`, except from those at which the case cannot be solved.
+    """Search from each of `starts`. Skip a start if the case cannot be solved there.
 
-    If the case cannot be solved at any start, the `RestitutionError` of the first start is raised.
+    If all starts are skipped, the `RestitutionError` of the first start is raised.
     """
     failures: list[RestitutionError] = []
     for start in starts:
@@ -135,7 +135,8 @@ def search_widely(model: CaseModel, data: Data) -> list[Minimum]:
 
     `_SCANNED` points are spread evenly over the range of the logarithms of the parameters. The
     searches start from the first guess, and from the `_STARTS` points with the smallest sums of
-    squares. Raises `CaseError` if the case cannot be solved at any of these starts.
+    squares. A start is skipped if the case cannot be solved there. Raises `CaseError` if all
+    starts are skipped.
     """
     from scipy.stats.qmc import Halton
 
@@ -155,11 +156,12 @@ def search_widely(model: CaseModel, data: Data) -> list[Minimum]:
 
 
 def distinct(minima: Sequence[Minimum]) -> list[Minimum]:
-    """Select minima that differ.
+    """Select minima that differ from each other, as starts of further searches.
 
     The first of `minima` is always kept. Another minimum is kept if it meets two conditions. It
     must differ by more than `DISTANCE` from all minima that are already kept. Its sum of squares
-    must be at most `_WORTH` times the smallest sum of squares of all minima except the first.
+    must be at most `_WORTH` times the smallest sum of squares. This smallest sum does not include
+    the first minimum, because the first minimum may come from a search at a different `Cost`.
     """
     first, *others = minima
     least = min((other.squares for other in others), default=0.0)

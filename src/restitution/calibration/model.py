@@ -49,7 +49,7 @@ large, and "quick" uses cells twice as large and only `_FEW` surfaces."""
 _RATIO = 1.3  # ratio of each depth to the previous depth
 SURFACES = 8  # number of surfaces of a curve if the case asks for one realisation
 _FEW = 3  # number of surfaces of a quick curve
-MOST_VELOCITIES = 12  # largest number of velocities in the case file that is written
+MOST_VELOCITIES = 12  # largest number of velocities in the fitted case file
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,7 @@ class Mean:
     def resolved_at(self, velocity: Array) -> NDArray[np.bool_]:
         """Whether the grid resolves the two computed contacts that enclose `velocity` (m/s).
 
-        True only if it resolves them for every surface.
+        True only if the grid resolves both contacts for every surface.
         """
         resolved = [each.interpolated("resolved", velocity) for each in self.curves]
         return np.asarray(np.min(resolved, axis=0) > 1 - 1e-9)

@@ -9,10 +9,11 @@ divided by σ. Three kinds of deviations contribute to the covariance C of the p
 
 In the first term, s are the standard deviations of errors that are independent between points. In
 the second term, Δ is the difference of the COR of one computed surface from the mean COR of n
-computed surfaces. The mean COR is fitted to the data. The measured COR is assumed to be a mean over
-n places of impact. The second term is the covariance of the difference between the two means. If
-all impacts hit the same place, the second term is (1 + 1/n) S instead. In the third term, Δ_grid is
-the deviation due to the grid.
+computed surfaces, and S is the resulting covariance of the parameters for a single surface. The
+mean COR is fitted to the data. The measured COR is assumed to be a mean over n places of impact.
+Each of these two means contributes S/n. If all impacts hit the same place, the measured COR
+contributes S, so the second term is (1 + 1/n) S instead. In the third term, Δ_grid is the deviation
+due to the grid.
 
 Intervals are computed with Student's t distribution, with the degrees of freedom according to Welch
 and Satterthwaite (Satterthwaite 1946).
@@ -57,10 +58,10 @@ class Deviations:
 
     @property
     def by_surface(self) -> Array:
-        """Deviations of COR with covariance 2 S/n, shape (surfaces, points).
+        """The field `surfaces`, scaled for the difference between two means over n surfaces.
 
-        2 S/n is the covariance of the difference between two means over n surfaces, where S is the
-        covariance of the COR of single surfaces.
+        The shape is (surfaces, points). The sum of the outer products of the rows is the covariance
+        of this difference. It is 2/n times the covariance of the COR of single surfaces.
         """
         n = len(self.surfaces)
         return self.surfaces * math.sqrt(2 / (n * max(n - 1, 1)))
@@ -72,7 +73,10 @@ class Deviations:
 
     @property
     def systematic(self) -> Array:
-        """Standard deviations of COR due to random surfaces, grid and `random` together."""
+        """Standard deviations of COR due to `random`, `surfaces` and `grid` together.
+
+        They are purely systematic only if `random` does not contain the noise of measurements.
+        """
         squares = self.random**2 + (self.by_surface**2).sum(axis=0) + self.by_grid**2
         return np.asarray(np.sqrt(squares))
 
@@ -93,8 +97,8 @@ class Uncertainty:
     def of(cls, jacobian: Array, weights: Array, deviations: Deviations) -> Uncertainty:
         """Compute the uncertainty.
 
-        `jacobian` is ∂COR/∂x at the points, where x are the logarithms. `weights` are the standard
-        deviations by which residuals are divided.
+        `jacobian` is ∂COR/∂x at the measured points, with x = ln(value/first guess) for each
+        parameter. `weights` are the standard deviations by which residuals are divided.
         """
         scaled = jacobian / weights[:, None]
         U, s, Vt = np.linalg.svd(scaled, full_matrices=False)
@@ -114,7 +118,10 @@ class Uncertainty:
 
     @cached_property
     def _unknown(self) -> Array:
-        """Large covariance that is added along directions in which COR hardly changes."""
+        """Large covariance of the combinations of parameters that hardly change COR.
+
+        It is added because the data do not determine these combinations.
+        """
         _, s, Vt = np.linalg.svd(self.scaled, full_matrices=False)
         lost = Vt[s < _LEAST]
         return np.asarray(lost.T @ lost / _LEAST**2)
@@ -171,7 +178,10 @@ class Uncertainty:
 
     @cached_property
     def by_one_place(self) -> Array:
-        """Standard deviation of the logarithms due to surfaces if all impacts hit one place."""
+        """Standard deviation of the logarithm of each parameter if all impacts hit one place.
+
+        Only the random surfaces contribute.
+        """
         n = len(self.deviations.surfaces)
         return np.asarray(math.sqrt((n + 1) / 2) * self.deviation("surface"))
 
@@ -185,16 +195,13 @@ class Uncertainty:
         return np.asarray(direction / direction[np.abs(direction).argmax()])
 
     def effect(self, parameter: int) -> float:
-        """Change of the residuals, in standard deviations, when a parameter is doubled."""
+        """Norm of the change of the weighted residuals when a parameter is doubled."""
         return math.log(2) * float(np.linalg.norm(self.scaled[:, parameter]))
 
     def band(self, jacobian: Array) -> Array:
         """Half-width of the 95 % interval of the fitted COR, one value for each row of `jacobian`.
 
-        `jacobian` is ∂COR/∂x at the velocities of the result, where x are the logarithms.
+        Each row of `jacobian` is ∂COR/∂x at one velocity, with x = ln(value/first guess) for each
+        parameter. The half-width is at most 1, the range of COR.
         """
-        noise = (jacobian @ self.sensitivity * self.deviations.random) ** 2
-        whole = noise.sum(axis=1)
-        for each in (*self.deviations.by_surface, self.deviations.by_grid):
-            whole = whole + (jacobian @ (self.sensitivity @ each)) ** 2
-        return np.asarray(1.96 * np.sqrt(whole))
+        return np.array([min(self.half(row), 1.0) for row in jacobian])

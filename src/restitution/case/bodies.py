@@ -45,8 +45,8 @@ _STRENGTHS = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*(?:\*\s*)?Y\s*")
 class BodyTable(Table):
     """The tables `[first]` and `[second]`.
 
-    In the case file, `second = "steel"` instead of a table means a flat wall of steel. Any other
-    material of the library can be named in the same way.
+    The name of a library material can replace either table. It then means a flat wall of this
+    material, as in `second = "steel"`.
     """
 
     material: str | None = None
@@ -226,11 +226,13 @@ class InterfaceTable(Table):
             return self._growing(*min(known))
         if self.plasticity is None and self.tangent_modulus is None:
             return pressure
-        name, body = ("first", first) if first.yield_strength is None else ("second", second)
+        name, body = min(
+            (each for each in (("first", first), ("second", second)) if not each[1].yield_strength),
+            key=lambda each: each[1].hardness or math.inf,
+        )
         raise CaseError(
-            f"interface.yield_strength: is missing, and {_named(name, body)}, the softer body, "
-            "has no yield_strength; give interface.yield_strength, the yield_strength of this "
-            "body, or a yield_pressure"
+            f"interface.yield_strength: is missing, and {_named(name, body)} has no "
+            "yield_strength; give one of the two, or a yield_pressure"
         )
 
     def _growing(self, yield_strength: float, source: str) -> Yielding:
@@ -242,7 +244,7 @@ class InterfaceTable(Table):
         )
 
     def _at_a_pressure(self, first: BodyTable, second: BodyTable) -> Yielding:
-        """Make the model with a constant yield pressure: the given one, or that of the softer body.
+        """Make the model with a constant yield pressure, given or taken from the softer body.
 
         The yield pressure of a body is a multiple of its yield strength Y, by default 2.8 Y. A body
         whose Y is unknown yields at its hardness.

@@ -129,7 +129,7 @@ class Case(Table):
             )
 
     def _check_attraction(self) -> None:
-        """Raise `ValueError` for keys that cannot be combined with periodic adhesion."""
+        """Raise `ValueError` for keys that a periodic contact with adhesion does not accept."""
         if self.interface.adhesive_energy == 0:
             return
         if self.interface.adhesion == "jkr":
@@ -197,8 +197,8 @@ class Case(Table):
     def variant(self, number: int) -> Case:
         """Return this case with other surfaces.
 
-        `number` is added to the `seed` of each table [roughness] or, for a scan without a seed, to
-        its `place`.
+        `number` is added to the `seed` of each table [roughness]. If the table is a scan without a
+        seed, `number` is added to its `place`, which selects the part of the scan that is used.
         """
         return self.model_copy(
             update={"roughness": tuple(part.variant(number) for part in self.roughness)}
@@ -216,7 +216,7 @@ class Case(Table):
         return self.model_copy(update={"grid": self.grid.model_copy(update={"refine": factor})})
 
     def factors(self) -> list[int]:
-        """Refinement factor of every depth, from the shallowest to the deepest."""
+        """Refinement factor of the grid at each depth, from the shallowest to the deepest."""
         if isinstance(self.grid.refine, tuple):
             return list(self.grid.refine)
         return [self.grid.factor] * len(self.depths())

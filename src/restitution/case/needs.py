@@ -19,7 +19,7 @@ _PROCESS = 250e6  # bytes for the program, its libraries and its plots
 _SURFACE = 75.0  # a generated surface
 _SKEWED = 115.0  # a generated surface with skewness or kurtosis
 _MARGIN = 60.0  # per node of the enlarged grid from which a non-periodic surface is cut
-_SCAN = 60.0  # per pixel of a scan: reading, levelling and its spectrum
+_SCAN = 60.0  # per pixel, to read and level a scan and compute its spectrum
 _BAND = 90.0  # per node of the finest grid for adjusting the waves of a twin
 _DESCRIBED = 150.0  # `restitution surface`: autocorrelation, spectrum and HTML page
 
@@ -82,7 +82,7 @@ def measured_bytes(grid: Grid, scan: Grid, *, twin: bool) -> float:
 
 
 def _band_nodes(grid: Grid, scan: Grid) -> float:
-    """Upper estimate of the number of nodes of the finest grid that a twin needs for adjustment.
+    """Upper estimate of the number of nodes of the finest grid on which a twin is adjusted.
 
     The phases of the waves of a twin are adjusted on several grids (see `surfaces.twin`). `grid` is
     the grid of the twin, and `scan` is the grid of the pixels of the scan.

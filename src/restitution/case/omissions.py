@@ -55,7 +55,10 @@ def _no_adhesion(case: Case) -> str | None:
 
 
 def _lowest_velocity(case: Case, mass: float) -> float:
-    """The lowest impact velocity (m/s): prescribed, or computed for smooth elastic bodies."""
+    """The lowest impact velocity (m/s) of the case.
+
+    If the case prescribes loads or indentations, the velocity is that of smooth elastic bodies.
+    """
     first, pair = case.depths()[0], case.pair()
     if case.impact is not None:
         return first

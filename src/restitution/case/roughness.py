@@ -35,7 +35,9 @@ from restitution.surfaces.shift import place_of
 from restitution.surfaces.twin import LEAST_PIXELS
 
 MOST_REALISATIONS = 1000
-MOST_PLACES = 10_000  # largest `place`, the number of the scan's point that is moved to the middle
+# Largest `place`. `place` is the number of a point in a fixed sequence (see `surfaces.shift`). The
+# scan is moved so that this point is in the middle.
+MOST_PLACES = 10_000
 
 # Key of the case file for each argument of `crop` and `remove_outliers`.
 _CLEANING_KEYS = {
@@ -153,8 +155,8 @@ class MeasuredRoughness(Table):
             raise ValueError('extend = "twin" makes a random surface and needs a seed; give a seed')
         if self.seed is not None and self.extend != "twin":
             raise ValueError(
-                'seed applies only to extend = "twin"; remove seed, or replace it by place to use '
-                "another part of the scan"
+                'seed applies only to extend = "twin"; remove seed (the key place selects another '
+                "part of the scan)"
             )
         if self.place and self.extend == "twin":
             raise ValueError('place does not apply to extend = "twin"; remove place, or vary seed')
@@ -170,8 +172,9 @@ class MeasuredRoughness(Table):
         return self.model_copy(update={"seed": self.seed + number, "realisations": 1})
 
     def scan(self, folder: Path) -> Surface:
-        """Read, clean and level the scan, and move the point with the number `place` to the middle.
+        """Read, clean and level the scan, and move the point that `place` selects to the middle.
 
+        `place` is the number of this point in a fixed sequence of points (see `surfaces.shift`).
         The file name is relative to `folder`.
         """
         with _naming({}):
@@ -226,10 +229,10 @@ class MeasuredRoughness(Table):
         return replace(finer, provenance={**finer.provenance, "refined": factor, "refinement": how})
 
     def _steps_to_pixel(self, grid: Grid, pixels: Grid, factor: int) -> int:
-        """Return the number by which to divide the cells of `grid` to reach the size of the pixel.
+        """Number of parts into which each cell of `grid` is divided along each axis for the scan.
 
-        The result is a power of two that divides `factor`. If `factor` is too small, the divided
-        cells are still larger than the pixel.
+        It is the smallest power of two for which the parts are not larger than the pixels. It must
+        also divide `factor`. If `factor` is too small, the parts are still larger than the pixels.
         """
         steps = 1
         while factor % (2 * steps) == 0 and any(

@@ -86,7 +86,7 @@ def compare_theory(
 
 
 def _tables(velocities: list[float], found: "list[Theory]", width: int) -> Iterator[Table]:
-    """Make tables with one column for each theory, as many as fit into `width` characters."""
+    """Make tables of COR that fit into `width` characters. Each theory is a column of a table."""
     heads = ["\n".join(textwrap.wrap(each.name, 9, break_long_words=False)) for each in found]
     start = 0
     while start < len(found):

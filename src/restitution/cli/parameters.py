@@ -1,7 +1,7 @@
 """Arguments and options that several verbs share.
 
 In the help, OUT is always the folder that a verb writes, and FILE is a single file that it writes.
-Inputs are named by their content.
+The placeholders of most inputs state the content of the input, such as CASE or RESULTS.
 """
 
 from enum import StrEnum

@@ -94,7 +94,8 @@ def simulate(
     for each in velocities:
         found, energies = collide_in_time(force, each), law.at(each)
         # The difference between the simulated COR and the COR from the stored energies estimates
-        # the error that the force curves cause. The error of the latter COR is a lower bound.
+        # the error that the force curves cause. The printed error is never smaller than the error
+        # of the COR from the stored energies.
         error = max(abs(found.restitution - energies.restitution), energies.error)
         courses += course(found)
         table.add_row(

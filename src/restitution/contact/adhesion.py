@@ -34,10 +34,10 @@ from restitution.theory import Kendall
 
 _ACCURACY = 1e-3  # tolerance of solves between releases, as a fraction of the crack opening
 
-# The balance (see the top of this file) is determined by the mean of the energy release rate G over
-# the edge nodes that are about to move: those where G exceeds the fraction _ACTIVE of the work of
-# adhesion. The balance is interpolated between the states before a retraction (position 0) and
-# after it (position 1), or extrapolated backwards, at most to the position _EARLIEST.
+# The balance (see the top of this file) is interpolated between the state before a retraction
+# (position 0) and the state after it (position 1). It may be extrapolated backwards, at most to the
+# position _EARLIEST. The energy release rate G is averaged over the edge nodes that are about to
+# move. At these nodes, G exceeds the fraction _ACTIVE of the work of adhesion.
 _ACTIVE, _EARLIEST = 0.8, -0.5
 # Smallest pull-off radius of an asperity (cells) for which balances are used. On coarser grids most
 # nodes leave the contact because the bodies separate, not because G reaches the work of adhesion.
@@ -155,7 +155,8 @@ def grow_contact(
 
     state = release(box, held, first_guess)
     convolutions = state.convolutions
-    # At first touch, the node in contact carries no pressure yet, but its neighbours may attach.
+    # At first touch no node carries pressure yet, but the neighbours of the held nodes may attach.
+    # The first ring is then placed around the held nodes.
     touching = state.box_pressure != 0 if state.contact_nodes else reframe(held, box, state.box)
     tried = closure and state.contact_nodes > 0
     cells = 1
@@ -248,10 +249,10 @@ def balances_are_reliable(state: State) -> bool:
 def balance_of(state: State) -> tuple[float, float]:
     """Return the balance of the contact area of a loaded `state`: indentation (m) and force (N).
 
-    At the balance, the energy release rate equals the work of adhesion. To find it, the contact is
-    solved once more with the same contact area, at a smaller indentation. The difference is a
-    fraction of the pull-off displacement of a flat punch with this area. If no balance exists, the
-    values of `state` are returned.
+    At the balance, the energy release rate equals the work of adhesion. To find the balance, the
+    contact is solved once more with the same contact area. The indentation of this solve is smaller
+    by a fraction of the pull-off displacement of a flat punch with this area. If no balance exists,
+    the values of `state` are returned.
     """
     contact = state.contact
     if state.contact_nodes == 0:
@@ -275,8 +276,8 @@ def _balance(state: State, retracted: State) -> tuple[float, float] | None:
     At the balance, the mean of the energy release rate G along the edge equals the work of
     adhesion. `retracted` has the same contact area at a smaller indentation. While the contact area
     is fixed, sqrt(G) and the force are linear in the indentation, so the two states determine the
-    balance. Returns None if G is nowhere close to the work of adhesion, or if the mean of G does
-    not increase from `state` to `retracted`.
+    balance. Returns None if G does not exceed the fraction `_ACTIVE` of the work of adhesion at any
+    edge node, or if the mean of G does not increase from `state` to `retracted`.
     """
     contact = state.contact
     touching = state.box_pressure != 0

@@ -17,8 +17,8 @@ from restitution.contact.contact import Contact
 from restitution.contact.state import State
 from restitution.numerics.quadrature import integrate_adaptively
 
-# Number of intervals of the integral over depth. The first two values are the initial numbers for
-# integrals that begin at first touch and at another state. The third value is the largest number.
+# Number of intervals of the integral over depth. The initial number is _FROM_TOUCH if the integral
+# begins at first touch, and _FROM_STATE if it begins at another state. The largest number is _MOST.
 _FROM_TOUCH, _FROM_STATE, _MOST = 4, 2, 16
 # The depths are proportional to t^_CROWDING with evenly spaced t. So they are closer together near
 # first touch, where the curvature of the force is large.
@@ -26,10 +26,11 @@ _CROWDING = 1.5
 # The error estimate is this factor times the change of the work when every second depth is left
 # out. The factor is above 1 because the force of rough contacts jumps.
 _MARGIN = 1.5
-# The loading steps influence which nodes attach. For each value of `Contact.approach`, this is the
-# estimated error of the work, as a fraction of the work of adhesion times the contact area. The
-# true error is the difference from loading in 240 steps. It was smaller than the estimate in 93 %
-# of 29 validation contacts with `equilibrium`, and in all 11 contacts with `pull-increments`.
+# The computed work depends on the loading steps, because they influence which nodes attach. For
+# each value of `Contact.approach`, this is the estimated error of the work due to these steps, as a
+# fraction of the work of adhesion times the contact area. In validation contacts, the work was
+# compared with the work of loading in 240 steps. The difference was smaller than the estimate in
+# 93 % of 29 contacts with `equilibrium`, and in all 11 contacts with `pull-increments`.
 _PINNING = {"equilibrium": 0.02, "pull-increments": 0.006, "hertzian": 0.0}
 
 # Largest number of bisections of the quadrature of `work_by_force`.
@@ -126,7 +127,7 @@ def _integral(points: list[Point], first: float, last: float) -> float:
     from scipy.interpolate import CubicSpline
 
     x, F = np.array(points).T
-    # Drop each point whose indentation does not exceed that of all points before it.
+    # Keep only points whose indentation is larger than the indentation of every earlier point.
     kept = np.append(True, x[1:] > np.maximum.accumulate(x)[:-1])
     x, F = x[kept], F[kept]
     if x.size == 1:

@@ -96,7 +96,7 @@ class Pair:
     def yield_coefficient(self) -> float:
         """`theory.yield_coefficient` at the mean Poisson's ratio of the bodies (dimensionless).
 
-        Smooth bodies first yield where the largest pressure is this number times the yield
+        Smooth bodies begin to yield when the largest pressure is this number times the yield
         strength.
         """
         nu = 0.5 * (self.first.poissons_ratio + self.second.poissons_ratio)

@@ -89,7 +89,8 @@ def yield_bound(contact: Contact, indentation: float, residual: float) -> tuple[
     The bound is a read-only array of the shape of the grid. It is computed from the pressure of an
     elastic solve. `residual` is the tolerance of the later solve under this bound. The elastic
     solve has a larger tolerance, because the bound depends only on the logarithm of the elastic
-    pressure. The elastic contact may reach the edge of the grid. Raises `NotConvergedError`.
+    pressure. Raises `NotConvergedError`. If the elastic contact reaches the edge of the grid, no
+    error is raised.
     """
     bound = np.full(contact.grid.nodes, contact.first_yield_pressure)
     tolerance = min(_RESIDUAL_FACTOR * residual, _LARGEST_RESIDUAL)

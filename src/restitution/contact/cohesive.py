@@ -8,9 +8,9 @@ The bodies interact at every node by a traction that depends on the gap g (the i
 φ is the energy of the law, K the operator from pressure to elastic displacement, z₀ the equilibrium
 separation, h₀ the initial gap and u_p the plastic displacement. Unlike in the JKR limit, no set of
 contact nodes has to be found, and no nodes are released. Where an equilibrium ceases to exist, the
-solve descends to another one; `cohesive_path` computes the energy that is dissipated there.
-Surfaces yield where the pressure of the law would exceed the bound: the pressure stays at the
-bound, and the rest of the approach becomes plastic displacement.
+solve descends to another equilibrium. `cohesive_path` computes the energy that is dissipated there.
+Surfaces yield where the pressure of the law would exceed the bound. The pressure then stays at the
+bound, and further approach of the surfaces becomes plastic displacement.
 
 A node is *in contact* if its gap is smaller than 3^{1/6} z₀, the gap at which the attraction is
 largest. At smaller gaps the law is stable: its attraction grows with the gap. As the range of the
@@ -21,7 +21,7 @@ The solve covers a box of the grid. Nodes outside the box, and the paraboloid ou
 attract as rigid bodies.
 
 In a periodic contact the box is the whole period, and δ is the approach of the mean planes. The
-mean of u is then zero, and the mean pressure balances the mean traction of the law.
+mean of u is then zero, and the mean pressure follows from the interface law alone.
 """
 
 from __future__ import annotations

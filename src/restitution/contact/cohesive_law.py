@@ -43,8 +43,8 @@ class BoundedLaw:
     """The interface law of the nodes of a box, as a function of their elastic displacement u.
 
     The gap is `base` + u. If the bodies yield (`yields`), the pressure does not exceed `limit`. For
-    elastic bodies, the law is continued linearly above the pressure E*, which no result reaches.
-    The continuation keeps the iteration away from negative gaps.
+    elastic bodies, the law is continued linearly above the pressure E*. The continuation keeps the
+    pressure finite if the iteration reaches negative gaps.
     """
 
     def __init__(self, contact: Contact, base: Array, limit: Array | float) -> None:
@@ -78,9 +78,10 @@ class BoundedLaw:
         return energy, slope, stiff
 
     def beyond(self, u: Array) -> Array:
-        """Distance (m) by which the gap is below the gap at which the pressure reaches its limit.
+        """Limiting gap minus actual gap (m) at the displacement `u`; 0 at larger gaps.
 
-        If the bodies yield, it is the plastic displacement.
+        At the limiting gap, `least`, the pressure reaches its limit. If the bodies yield, the
+        result is the plastic displacement added by this solve.
         """
         return np.maximum(self.least - self.base - u, 0.0)
 

@@ -34,12 +34,13 @@ from restitution.contact.state import State
 from restitution.errors import NotConvergedError
 from restitution.numerics.box import union
 
-# In each step, the work of the force must equal the change of energy. This is the largest accepted
-# difference, as a fraction of the energies of the contact.
+# In a step without a jump, the work of the force must equal the change of energy. This is the
+# largest accepted difference, as a fraction of the reference energy `_scale`.
 ACCURACY = 2e-4
-# In a step without a jump, the parabola through three forces and the trapezium rule must agree
-# within this multiple of the accepted difference. Otherwise, the parabola could have the right work
-# by chance although the force jumped.
+# The work of the force in a step is computed twice, from the parabola through three forces and by
+# the trapezium rule. In a step without a jump, the two results differ by at most this multiple of
+# the accepted difference. If they differ more, the force may have jumped, and the result of the
+# parabola may be right only by chance.
 _CORRECTION = 10.0
 _FIRST_STEP = 0.25  # length of the first step, in units of the equilibrium separation z₀
 

@@ -13,17 +13,17 @@ nodes at a kink until G = 1.0 w. The pull-off force is therefore too large: its 
 `crack-closure`: the contact edge is a crack, and G is the work of closing the crack by one cell
 (Rybicki and Kanninen 1977, Eng. Fract. Mech. 9, 931–938). For each face between a node in contact
 and a node outside, this work per area is ½ |p| times the opening, with the pressure p of the node
-in contact. The relative error of G is 1e-3 on a straight edge; on a staircase, only the mean of G
+in contact. The relative error of G is 1e-3 on a straight edge. On a staircase, only the mean of G
 over the faces has this accuracy. G is therefore averaged along the edge over about five cells, but
-never across to another patch. The opening is the separation of the surfaces beyond the smooth
-continuation of their contact:
+never across to another patch. The opening is the elastic displacement u of the node outside, minus
+its extrapolation from the nodes in contact:
 
     opening = (u₊ − 2u₀ + u₋) + (h₀ − 2h₋ + h₋₋),
 
-where u is the elastic displacement and h the gap before this displacement. Index 0 is the edge
-node, + the node outside, and − and −− the nodes inside. The second bracket continues the curvature
-of the surfaces in the contact. The gap h of the node outside does not appear in the opening, so an
-initial gap between surfaces that never touched does not count.
+where h is the gap before elastic displacement. Index 0 is the edge node, + the node outside, and −
+and −− the nodes inside. The second bracket extrapolates with the curvature of the surfaces in the
+contact. The gap h of the node outside does not appear in the formula. An initial gap between
+surfaces that never touched is therefore not part of the opening.
 
 The limit σ_c of a rectangular cell with the edges hx and hy is given by σ_c² = 2πE*w hx hy/I. I is
 the integral of 1/r over all pairs of points of a cell, where r is the distance between the two
@@ -65,11 +65,11 @@ _RELEASE_RADIUS, _LARGEST_RADIUS = 3, 40
 # coarse grids, the largest G of an edge is this factor times the mean. A node is therefore released
 # only if G exceeds this factor times the work of adhesion.
 _LARGEST_ON_COARSE_GRIDS = 1.04
-# A grid counts as fine if the rim under tension is wider than _RESOLVED_RIM (cells). The mean of G
-# is then accurate. A patch is at rest if the mean of 1 − sqrt(w/G) over its edge is below _AT_REST,
-# where w is the work of adhesion and nodes with G < w count as zero. On a fine grid the tension
-# limit is not applied. Nodes at the kinks of an edge reach this limit as soon as G = w, and their
-# release would roughen the edge.
+# A grid counts as fine if the rim under tension is wider than _RESOLVED_RIM (cells). On a fine grid
+# the mean of G is accurate. A patch is at rest if the mean of max(1 − sqrt(w/G), 0) over its edge
+# nodes is below _AT_REST, with the work of adhesion w. On a fine grid the tension limit is not
+# applied, because nodes at the kinks of an edge reach this limit as soon as G = w. Their release
+# would roughen the edge.
 _RESOLVED_RIM, _AT_REST = 2.0, 0.002
 # Smallest width (cells) of a strip along the edge whose nodes are all released together. If the
 # strip is narrower, single nodes are released.
@@ -102,8 +102,8 @@ def released_by_closure(edge: Edge, p: Array, work_of_adhesion: float, limit: fl
     """Select nodes to release by `crack-closure`, from the pressure `p` and the contact `edge`.
 
     Nodes are released until the energy release rate falls to the work of adhesion. `_recession`
-    estimates the distance by which each edge node must recede. It defines a strip of this width
-    inside the smoothed outline, and all nodes under tension in the strip are released. If the
+    estimates the distance by which each edge node must recede. This distance is the width of a
+    strip inside the smoothed outline. All nodes under tension in the strip are released. If the
     strip is narrow or has no nodes under tension, single nodes under the largest tension are
     released instead. On coarse grids, nodes whose tension exceeds `limit` (Pa) are also released.
     """
@@ -290,8 +290,9 @@ def _diffusion(
 ) -> tuple[NDArray[np.intp], Array]:
     """Return the neighbours of each edge node and their weights in a diffusion step.
 
-    Both arrays have shape (nodes, 9). The step diffuses along the edge and conserves the sum
-    (Metropolis weights). A missing neighbour is replaced by the node itself.
+    Both arrays have shape (nodes, 9). A step replaces the value at each edge node by a weighted
+    mean of the values at the node and its neighbours. The weights (Metropolis) conserve the sum of
+    the values over all edge nodes. A missing neighbour is replaced by the node itself.
     """
     here = np.arange(i.size)
     number = np.full((shape[0] + 2, shape[1] + 2), -1)

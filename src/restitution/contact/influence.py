@@ -2,7 +2,7 @@
 
 Pressure and displacement are positive into the body. Both bodies are combined into one half-space
 of contact modulus E*: 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂. In shear, traction and displacement are
-along x, and the two compliances of `Pair.shear_compliances` combine the bodies.
+along x. The compliances in shear are sums over both bodies (`Pair.shear_compliances`).
 
 On a periodic half-space, a pressure wave with the angular wave number q causes a displacement wave
 with 2/(E* |q|) times its amplitude (Johnson 1985, *Contact Mechanics*, §13.2).
@@ -109,14 +109,15 @@ def cerruti_displacement(
 
     A tangential force Q along x moves the surface of a half-space of shear modulus G by
     u = Q [(1 − ν)/r + ν x²/r³]/(2πG) along x, at the distance r from the force (Cerruti 1882;
-    Johnson 1985, *Contact Mechanics*, eq. 3.75). Its two terms are integrated over the cell by the
+    Johnson 1985, *Contact Mechanics*, eq. 3.75). Both terms are integrated over the cell with the
     identities y²/r³ = ∂²r/∂x², x²/r³ = ∂²r/∂y² and 1/r = x²/r³ + y²/r³. The result is
 
         u = α [[x asinh(y/|x|)]] + β [[y asinh(x/|y|)]],   α = Σ (1 − ν)/(2πG),   β = Σ 1/(2πG).
 
-    α and β are the `compliances`, with sums over the bodies. The double brackets are the
-    differences between the corners of the cell. Cancellation makes the relative error grow as the
-    square of the distance in cells; it is below 1e-9 up to 1000 cells.
+    α and β are the `compliances`, with sums over the bodies. Double brackets mean that the
+    expression is evaluated at the four corners of the cell and summed with alternating signs.
+    Cancellation makes the relative error grow as the square of the distance in cells. The error is
+    below 1e-9 up to 1000 cells.
     `x` and `y` (m) broadcast together, and must not lie on the lines through the edges of the cell.
     """
     alpha, beta = compliances

@@ -170,7 +170,7 @@ def solve_without_work(
             residual=residual,
         )
     elif contact.adhesive and contact.approach == "pull-increments":
-        # The retraction may release all nodes. The bodies are then out of contact.
+        # If the retraction releases all nodes, the result is a state out of contact, not an error.
         pressed = solve_nonadhesive(contact, indentation + PULL_INCREMENT, limit, residual)
         state = unload_adhesive(pressed, indentation, residual=residual)
         state = replace(state, adhesive_work=0.0, is_first_loading=True)

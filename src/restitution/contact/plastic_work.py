@@ -24,9 +24,10 @@ def plastic_work(before: State | None, after: State) -> tuple[float, float]:
     1.42 times as deep as `before`. Between the indentations δ₁ and δ₂, each node yields by the
     displacement Δu while its pressure bound grows from b₁ to b₂. If the plastic displacement is
     linear in δ and the bound is linear in ln δ, the work per area is
-    Δu [b₁ + (b₂ − b₁) (δ₂/(δ₂ − δ₁) − 1/ln(δ₂/δ₁))]. A node that begins to yield in this step
-    yields under bounds nearer to b₂, so the factor of b₂ − b₁ is then `_NEW`. The error is the
-    fraction `_RULE_ERROR` or `_NEW_ERROR` of the product Δu (b₂ − b₁).
+    Δu [b₁ + (b₂ − b₁) (δ₂/(δ₂ − δ₁) − 1/ln(δ₂/δ₁))]. If a node begins to yield in this
+    step, its bound is nearer to b₂ while it yields. The work per area is then
+    Δu [b₁ + `_NEW` (b₂ − b₁)]. The error per area is Δu (b₂ − b₁) times `_RULE_ERROR` or, if the
+    node begins to yield in this step, `_NEW_ERROR`.
     """
     contact, box = after.contact, after.box
     given, begun = after.plastic_displacement[box], np.asarray(contact.first_yield_pressure)

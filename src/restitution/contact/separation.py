@@ -2,8 +2,8 @@
 
 In each step the bodies first retract with a fixed contact area, so the force is linear in the
 indentation. Then nodes are released at the new indentation. In continuous unloading, these nodes
-would be released earlier. Because of the late release, the work that the contact returns in a step
-is smaller than in continuous unloading, by half the jump of the force times the step.
+would be released earlier. The late release reduces the work that the contact returns. In each step,
+the lost work is half the jump of the force times the step.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ RESTITUTION_ERROR = 0.002
 _ACCURACY = 1e-3  # tolerance of the solves as a fraction of the crack opening at the edge
 _STEPS_OF_RECOVERY = 8  # smallest number of steps into which the elastic recovery is divided
 
-# Smallest number of steps into which the pull-off displacement of a flat punch with the same area
-# is divided.
+# Smallest number of steps into which the pull-off displacement of a flat punch is divided. The
+# punch has the contact area of the present state.
 _STEPS_OF_TENSION = {"crack-closure": 32, "pohrt-popov": 16}
 _FINEST = 400  # the shortest step is the pull-off displacement of this punch divided by _FINEST
 _REFINEMENTS = (1, 2, 4)  # multiply the number of steps in turn until the tolerance is met
@@ -44,12 +44,11 @@ _REFINEMENTS = (1, 2, 4)  # multiply the number of steps in turn until the toler
 _SMALL = {"crack-closure": 0.005, "pohrt-popov": 0.0}
 _MOST_STEPS = 3000  # steps after which unloading counts as not converged
 
-# Error of the unloading work, as a fraction of the work that is lost by late release (see the top
-# of this file). The unloading work is the integral of the force along the states that are reached
-# after each release. To first order, this integral does not contain the loss, so only a fraction of
-# the loss is an error. In a comparison with ten times finer steps, this fraction was below 0.1 with
-# `crack-closure` and below 1/3 with `pohrt-popov`, which releases nodes in larger jumps. The values
-# include a margin of 1.5.
+# Late release of nodes loses work (see the top of this file). The unloading work is computed from
+# the forces after each release. To first order, it is therefore not reduced by this loss. Its error
+# is estimated as this fraction of the lost work. In a comparison with ten times finer steps, the
+# fraction was below 0.1 with `crack-closure` and below 1/3 with `pohrt-popov`, which releases nodes
+# in larger jumps. The values here are 1.5 times these limits.
 _LATENESS = {"crack-closure": 0.15, "pohrt-popov": 0.5}
 # For cohesive contacts, the tolerance of the energy balance of a step (`accuracy` in
 # `cohesive_path`), as a fraction of the tolerance of the restitution.
@@ -115,8 +114,8 @@ def _unload(
 ) -> Iterator[State]:
     """Generate `state` and the states of unloading down to separation.
 
-    The steps are at most 1/`finer` of the standard steps. For a cohesive contact, the steps depend
-    only on `tolerance`.
+    The upper limit of the step length is inversely proportional to `finer`. For a cohesive contact,
+    the steps depend only on `tolerance`.
     """
     contact = state.contact
     if isinstance(state, CohesiveState):
@@ -233,7 +232,7 @@ def _largest_tension(path: list[State]) -> float:
     """Largest tension (N) of a cohesive path.
 
     It is the vertex of the parabola through the state of largest tension and its two neighbours. If
-    these states are separated by a jump, it is the tension of the middle one.
+    the force jumps between these states, it is the tension of the state in the middle.
     """
     force = np.array([state.force for state in path])
     k = int(force.argmin())
@@ -272,8 +271,8 @@ def _plan(state: State, tolerance: float) -> tuple[float, float]:
     # For COR below 0.05, the value at COR = 0.05 is used.
     work = max(state.loading_work, 0.05 * stored)
     restitution = math.sqrt(max(stored - adhesion, 0.0) / work)
-    # With the loading work W_l, dCOR = dW/(2 W_l COR), so the tolerance allows an error of the work
-    # of dW = 2 W_l COR dCOR. Half of it is reserved for the error of the loading work.
+    # With the loading work W_l, dCOR = dW/(2 W_l COR). If dCOR is the tolerance, the error of the
+    # work may be dW = 2 W_l COR dCOR. Half of dW is reserved for the error of the loading work.
     allowed = 1.0 * tolerance * max(restitution, 0.05) * work
     if balances_are_reliable(state):  # balances do not depend on late releases
         return recovery, math.inf

@@ -48,8 +48,9 @@ class State:
         force_before_release: Force (N) just before nodes were released in this step of adhesive
             unloading; None after loading.
         balance: Indentation (m) and force (N) at which the energy release rate, averaged along the
-            edge of the previous contact area, equals the work of adhesion. None for a loaded state,
-            for a step that released no nodes or found no such point, and with `pohrt-popov`.
+            edge of the previous contact area, equals the work of adhesion. None for a loaded state
+            and with `pohrt-popov`. Also None if the step released no nodes, or if no such
+            indentation was found.
         is_first_loading: Whether the state was computed by loading the undeformed bodies, not by a
             step from another state (bool).
     """

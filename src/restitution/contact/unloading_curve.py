@@ -67,7 +67,7 @@ class UnloadingCurve:
         return replace(self, indentation=self.indentation[fewer], force=self.force[fewer])
 
     def largest_tension(self) -> float:
-        """Largest tension (N). Forces of balanced contacts are noisy and smoothed first."""
+        """Largest tension (N). Forces of a balanced curve scatter and are smoothed first."""
         F, largest = self.force, -float(self.force.min())
         if not self.balanced:
             return largest
@@ -83,9 +83,9 @@ class UnloadingCurve:
 def unloading_curve(path: list[State]) -> UnloadingCurve:
     """Return the curve of a `path` from `separate`.
 
-    Each contact area is represented by its balance, or by all its states if its balance is unknown
-    or it has too few nodes. On a grid where balances are not reliable, the points are all states of
-    the path.
+    Each contact area gives one point, its balance. If the balance is unknown, or if the contact
+    area has fewer than `_FEW_NODES` nodes, all states with this area are used instead. On a grid
+    where balances are not reliable, the points are all states of the path.
     """
     states = [(state.indentation, state.force) for state in path]
     balances = [state.balance for state in path[1:]]

@@ -38,8 +38,8 @@ from scipy.optimize import brentq
 
 from restitution.laws.law import Law
 
-# If 1 − e is below this value, dV is computed from an equation in which the first terms of a power
-# series in dV replace the logarithm.
+# The equation for c = dV is given at the top of this file. If 1 − e is below this value, the
+# logarithm in this equation is replaced by the first terms of its power series in c.
 _NEARLY_ELASTIC = 1e-4
 _TOLERANCE = 1e-12  # tolerance of root finding
 # If the dissipation d times the impact velocity V is below this value, the series e = 1 − ⅔ dV is
@@ -70,7 +70,7 @@ def hunt_crossley_dissipation(restitution: float) -> float:
     if 1 - e < _NEARLY_ELASTIC:
         return 1.5 * (1 - e**2) / (1 + e**3)
 
-    # Let c = dV. For small e, the product e·c is so close to 1 that rounding spoils 1 − e·c.
+    # Let c = dV. For small e, e·c is so close to 1 that 1 − e·c has a large rounding error.
     # Therefore solve for u with e·c = 1 − exp(−u).
     def excess(u: float) -> float:
         c = -math.expm1(-u) / e

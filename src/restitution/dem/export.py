@@ -47,8 +47,8 @@ def export(laws: Sequence[Law], code: str, velocity: float | None) -> dict[str, 
     if velocity is None:
         law = laws[0]
         raise CaseError(
-            f"velocity: {code} takes one coefficient of restitution for each pair, which holds at "
-            f'one velocity; give the velocity with --velocity, from "{law.lowest:.3g} m/s" to '
+            f"velocity: {code} takes one coefficient of restitution for each pair, valid at one "
+            f'velocity; give this velocity with --velocity, from "{law.lowest:.3g} m/s" to '
             f'"{law.highest:.3g} m/s"'
         )
     texts: dict[str, str] = import_module(f"restitution.dem.codes.{code}").write(table, velocity)

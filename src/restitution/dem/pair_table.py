@@ -42,7 +42,7 @@ class PairTable:
         self._require(code, combinations_with_replacement(numbers, 2), "pair of particle types")
 
     def require_all(self, code: str) -> None:
-        """Raise `CaseError`, which names `code`, if any pair except two walls has no law."""
+        """Raise `CaseError`, which names `code`, if a pair with at least one sphere has no law."""
         self.require_spheres(code)
         spheres, last = len(self.spheres), len(self.particles)
         pairs = product(range(1, spheres + 1), range(spheres + 1, last + 1))

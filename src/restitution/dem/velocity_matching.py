@@ -1,4 +1,7 @@
-"""Write a script that fits the constant COR e of a DEM code to the velocities in a simulation."""
+"""Write a script that finds one constant COR e for each pair of types in a DEM simulation.
+
+The script runs the simulation, reads the impact velocities, and takes e from the laws.
+"""
 
 from __future__ import annotations
 

@@ -1,1 +1,4 @@
-"""Restitution laws: COR of one pair against impact velocity, with fits and closed forms."""
+"""Restitution laws: coefficient of restitution (COR) of two bodies against impact velocity.
+
+The package also contains fits to a computed law, and closed forms for smooth bodies.
+"""

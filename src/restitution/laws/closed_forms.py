@@ -3,10 +3,11 @@
 The modules of `restitution.theory` state the ranges. Outside the range of a theory, this module
 returns NaN, even if the formula gives a number. No theory includes roughness.
 
-The theories describe yielding by one of three quantities. Hertz and sticking end at the pressure of
-first yield (`onset`). Thornton–Ning uses p_y, the pressure of a fully plastic contact. The other
-theories use the yield strength Y of a tensile test. If both bodies have a `yield_strength` and the
-interface has none, Y is the smaller one; otherwise Y = p_y/2.8.
+Each theory uses one of three quantities to describe yielding. The elastic theories (`hertz`,
+`sticking`) are valid at most up to the pressure of first yield (`onset`). Thornton–Ning uses p_y,
+the pressure of a fully plastic contact. The other theories use the yield strength Y of a tensile
+test. If both bodies have a `yield_strength` and the interface has none, Y is the smaller of the two
+strengths. Otherwise, Y = p_y/2.8.
 
 All units are SI. Arrays of velocities and of the coefficient of restitution e have the same shape.
 """
@@ -64,7 +65,7 @@ class Bodies:
     E: float
     m: float
     p_y: float  # pressure of a fully plastic contact; infinite for elastic bodies
-    onset: float  # largest pressure of elastic smooth bodies; infinite for elastic bodies
+    onset: float  # largest pressure at first yield; infinite if the bodies are purely elastic
     w: float
     wall: int | None  # which body is flat (0 or 1); None for two spheres
     equal: bool  # two identical spheres

@@ -3,15 +3,15 @@
     e² = Σ c_k L^k − s/V²,   L = ln(V/V₀)/w in [−1, 1]
 
 V₀ is the geometric mean of the lowest and highest velocity, and w scales ln(V/V₀) to the interval
-[−1, 1]. The term s/V² describes the loss by adhesion: the same energy at every velocity. For an
-elastic pair s is the square of the sticking velocity (Thornton & Ning 1998). The polynomial
+[−1, 1]. The term s/V² describes an energy loss by adhesion that is the same at every velocity. For
+an elastic pair, s is the square of the sticking velocity (Thornton & Ning 1998). The polynomial
 describes the loss by yielding. Low velocities at which nothing is lost (e = 1) or the pair sticks
 (e = 0) are excluded from the fit, except the highest of these velocities.
 
-The fit is linear least squares in e². Its error between the points is estimated as the larger of
-two values: the largest residual, and the largest leave-one-out residual (as in PRESS, Allen 1974,
-but with the maximum instead of the sum). The polynomial has the lowest degree whose error is below
-0.001 or at most 1.1 times the smallest error of all degrees.
+The fit is linear least squares in e². The error of the fit between the points is estimated from two
+values: the largest residual, and the largest leave-one-out residual (as in PRESS, Allen 1974, but
+with the maximum instead of the sum). The larger value is the estimate. The polynomial has the
+lowest degree whose error is below 0.001 or at most 1.1 times the smallest error of all degrees.
 """
 
 from __future__ import annotations

@@ -145,7 +145,7 @@ def _adhesion_of(law: Law, V_s: float) -> Parameters:
 
 def _walton_braun(law: Law) -> FittedLaw:
     k1 = _stiffness(law, exponent=1.0)
-    # At the highest velocity, a hardening of this size adds k1 to the unloading stiffness k2.
+    # The hardening `scale` adds k1 to the unloading stiffness at the highest velocity.
     scale = math.sqrt(k1 / law.mass) / law.highest
 
     def springs(x: Array) -> Parameters:
@@ -282,10 +282,10 @@ def _seen(law: Law, name: str) -> Array:
 
 
 def _stiffness(law: Law, exponent: float) -> float:
-    """Stiffness k₁ (N/mⁿ) of the spring F = k₁δⁿ: the geometric mean over the resolved points.
+    """Stiffness k₁ (N/mⁿ) of the spring with the loading curve k₁δⁿ, where n is `exponent`.
 
-    Each point gives the k₁ with which the loading work W leads to the maximum force F:
-    F^{1+1/n} = (n + 1) k₁^{1/n} W.
+    At each resolved point, k₁ is chosen such that the spring has the maximum force F and the
+    loading work W of the point: F^{1+1/n} = (n + 1) k₁^{1/n} W. The result is the geometric mean.
     """
     force, work, n = _seen(law, "force"), _seen(law, "loading_work"), exponent
     some = (force > 0) & (work > 0)
@@ -347,7 +347,10 @@ def _judged(
     fitted_to: str = "the coefficient of restitution",
     note: str = "",
 ) -> FittedLaw:
-    """Make the fitted law, with its COR at the points and its deviations from the computed COR."""
+    """Make the fitted law, with its COR at the points and its deviations from the computed COR.
+
+    `ends` states at which force or indentation the contact of the force law ends.
+    """
     V = law.column("velocity")
     found = np.where(law.fits_hold_at(V), restitution(V), np.nan)
     miss = found - law.column("restitution")

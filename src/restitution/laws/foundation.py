@@ -19,7 +19,8 @@ Solids Struct. 35, 2349–2378).
 A contact that has yielded responds to small motions elastically, as on its unloading curve. At
 every depth of loading, the normal loads of the springs are therefore computed from the unloading
 curve that starts at this depth. Springs that already touch keep their tangential displacement. This
-extension is not in the cited literature. `tangential_error` estimates the error of this law.
+extension is not in the cited literature. `tangential_error` estimates the error of the tangential
+force of the foundation.
 """
 
 from __future__ import annotations

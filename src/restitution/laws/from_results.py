@@ -64,7 +64,10 @@ def _law(out: Path, run: RunResults) -> Law:
         )
     points = _points(run)
     if not points:
-        raise CaseError(f"{out}: no stored depth has an impact velocity; add deeper indentations")
+        raise CaseError(
+            f"{out}: no impact has its maximum indentation at a stored depth, because adhesion "
+            "pulls the bodies together or the bodies do not touch; add deeper indentations"
+        )
     warnings = list(summary["warnings"])
     if summary["status"] != "complete":
         warnings.insert(0, f"the run is not complete ({summary['status']}: {summary['reason']})")
@@ -143,7 +146,7 @@ def _read(out: Path) -> RunResults:
 
 
 def _error_includes(diagnostics: Mapping[str, object]) -> str:
-    """Describe what the `error` of a point covers: the parts that it includes and excludes."""
+    """State which parts of the error of COR the `error` of a point includes and excludes."""
     includes = diagnostics.get("total_error_includes") or "solver"
     excludes = diagnostics.get("total_error_does_not_include") or "anything else"
     model = diagnostics.get("largest_model_error")

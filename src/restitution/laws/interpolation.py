@@ -2,12 +2,12 @@
 
     W_u/W_l = q(ln V) − s/V²
 
-W_u and W_l are the works of unloading and loading, V is the impact velocity and V_s the sticking
-velocity. A monotone cubic (PCHIP) interpolates q. The term s/V² is the loss by adhesion, an energy
-that is about the same at every velocity (s = V_s² for an elastic pair: Thornton & Ning 1998). The
-value of s makes q equal at the two lowest velocities. If this value is negative, or if the pair
-does not adhere, s is zero. The pair rebounds above the velocity at which the interpolated ratio is
-zero.
+W_u and W_l are the works of unloading and loading, and V is the impact velocity. A monotone cubic
+(PCHIP) interpolates q. The term s/V² describes an energy loss by adhesion that is about the same at
+every velocity. For an elastic pair, s is the square of the sticking velocity (Thornton & Ning
+1998). Here s is chosen such that q is equal at the two lowest velocities. If this value is
+negative, or if the pair does not adhere, s is zero. The pair rebounds above the velocity at which
+the interpolated ratio is zero.
 
 The error estimate at the middle of an interval is 1.5 times the larger leave-one-out residual of
 the two end points, and at least the difference between the cubic and linear interpolation. If the
@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-_SAFETY = 1.5  # error estimate divided by leave-one-out residual
+_SAFETY = 1.5  # ratio of the error estimate to the leave-one-out residual
 
 
 class RatioCurve:
@@ -104,6 +104,7 @@ class RatioCurve:
 def _pchip(x: Array, y: Array, at: float) -> float:
     from scipy.interpolate import PchipInterpolator
 
-    # PCHIP computes 1/slope, which overflows for slopes of 1e-308. The derivative is then set to 0.
+    # PCHIP divides by the slopes between the points. A slope of 1e-308 makes the quotient infinite,
+    # and the derivative at the point becomes 0, which is accurate enough.
     with np.errstate(over="ignore"):
         return float(y[0]) if x.size == 1 else float(PchipInterpolator(x, y)(at))

@@ -14,8 +14,9 @@ normal impact velocity V_n and the normal restitution e.
 
 To convert the error of the tangential law (`tangential_error`) to an error of the impulse of T, the
 motion is integrated again with a larger and a smaller tangential modulus. If the contact has
-yielded, a fraction of the impulse is added to the error. This fraction vanishes in full slip, where
-the impulse is exact for bodies of equal materials.
+yielded, the error of the impulse has a second part, which decreases to zero towards full slip. In
+full slip, the impulse is exact for bodies of equal materials. For unlike materials, the error has a
+third part, which is proportional to the impulse.
 
 Neglected: the coupling of normal and tangential displacements of unlike materials, the torque about
 the normal, rolling friction, and elastic waves.

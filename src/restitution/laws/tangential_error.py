@@ -19,11 +19,11 @@ bodies do not yield. Four effects cause an error:
   grows only by about β²/3 (atanh(β)/β − 1 for a round punch; Spence 1968, Proc. R. Soc. A 305,
   55–80). But if the coefficient of friction µ is not large compared with |β|, the surfaces slip
   radially under pressure alone (Spence 1975, J. Elast. 5, 297–319). Friction that opposes this
-  radial slip cannot also resist a tangential motion. Solutions that include the radial slip were
-  compared with the law. A relative change of the stiffness in the law would cause the same
-  difference of the impulse. This change is less than |β| if µ < |β|, and less than |β|³/µ² if µ is
-  larger. In full slip the radial slip turns the friction away from the direction of motion, so the
-  impulse is smaller.
+  radial slip cannot also resist a tangential motion. The impulse of the law was compared with
+  solutions that include the radial slip. The difference is stated as the relative error of the
+  stiffness that causes the same difference of the impulse. This error is less than |β| if µ < |β|.
+  For larger µ, it is less than the larger of |β|³/µ² and β²/3. In full slip, the radial slip turns
+  the friction away from the direction of motion, so the impulse is smaller.
 """
 
 from __future__ import annotations
@@ -50,10 +50,10 @@ _SHAPE, _ALIGNED, _INDEPENDENT = 0.35, 4.0, 36.0
 # Relative errors of stiffness and impulse after yield. For rough contacts they are multiplied by
 # the largest ratio of the depths of two neighbouring unloading curves.
 _YIELDED_STIFFNESS, _YIELDED_IMPULSE = 0.01, 0.1
-# Unlike materials (β): relative error of the impulse in full slip, divided by the relative error of
-# the stiffness.
+# Ratio of the relative error of the impulse in full slip to |β| min(1, β²/µ²) (unlike materials).
 _TURNED = 0.15
-# Unloading curves that start at less than this fraction of the largest indentation are ignored.
+# Unloading curves that start below this fraction of the largest indentation are ignored, except the
+# deepest of these curves.
 _SHALLOWEST = 0.2
 
 

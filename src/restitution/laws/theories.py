@@ -108,7 +108,7 @@ def marks(case: Case) -> dict[str, float]:
 
 
 def check_same_pair(case: Case, law: Law) -> None:
-    """Raise `CaseError` if R*, E* or m* of `case` and `law` differ, relatively by over 1e-6."""
+    """Raise `CaseError` if `case` and `law` differ in R*, E* or m* by a fraction above 1e-6."""
     bodies = Bodies.of(case)
     quantities = {
         "R*": (law.radius, bodies.R, "m"),

@@ -4,13 +4,13 @@
 
 x'' is an acceleration; v and v' are the velocities before and after the impact. F follows the
 loading curve until the particles stop approaching. Then F follows the unloading curve from the
-largest indentation. The resulting e checks two results. The stored unloading work is checked
-against the unloading forces. The formula for e from energies is checked against an equation of
-motion.
+largest indentation. The resulting e is an independent check of e = (W_u/W)^½, which a run computes
+from the works of unloading and loading, W_u and W. The time integration uses the unloading forces
+instead of W_u, and the equations of motion instead of the energy balance.
 
 The loading force is the derivative of a cubic Hermite spline through the stored loading work W. At
 the stored depths, the slope of the spline is the stored force. The particles therefore stop
-approaching where W equals the initial kinetic energy, as the formula from energies assumes. If W
+approaching where W equals the initial kinetic energy, as the energy balance requires. If W
 increases about as a power of δ, the spline interpolates ln W against ln δ.
 
 Unloading curves are monotone cubics (PCHIP) and are stored for some depths only. Between two of
@@ -46,7 +46,7 @@ _RTOL = 1e-10
 # Because of integration errors, an impact may exceed the deepest stored depth by this fraction.
 _SLACK = 1e-3
 # ln W is interpolated against ln δ only if the exponent n in W ∝ δⁿ is below this value (W is the
-# loading work). A larger n means that adhesion nearly cancels W.
+# loading work). A larger n means that W is nearly zero, because the bodies attract each other.
 _STEEPEST = 6.0
 _SAME = 1e-5  # largest relative difference of depths that count as equal
 
@@ -204,8 +204,9 @@ def collide_in_time(law: StoredForce, velocity: float) -> ReferenceCollision:
     """Integrate a head-on collision of the two particles of `law` at relative `velocity` (m/s).
 
     The particles start at first touch, in the frame of their centre of mass (with a wall, in the
-    frame of the wall). Raises `DomainError` if the collision is deeper than the stored forces, and
-    `NotConvergedError` if the integration fails.
+    frame of the wall). Raises `DomainError` if `velocity` is outside the computed velocities, or if
+    the largest indentation is outside the depths of the unloading curves. Raises
+    `NotConvergedError` if the integration fails or reaches the end of the loading curve.
     """
     if not 0 < velocity <= law.highest * (1 + 1e-9):
         raise DomainError(
@@ -370,7 +371,7 @@ def _separation(results: xr.Dataset, depth: Array) -> Callable[[float], float]:
     known = np.isfinite(ratio)
     if not known.any():
         raise OutputError(
-            "the results have no unloading to separation; run the case with "
+            "the results contain no unloading that ends in separation; run the case with "
             'unloading.method = "path"'
         )
     share = _pchip(np.log(depth[known]), ratio[known])

@@ -1,4 +1,7 @@
-"""The curve that the page redraws while a slider moves. It has one surface and no total error."""
+"""The curve that the page redraws while a slider moves.
+
+It is computed on the first surface of the case only, and without the total error.
+"""
 
 from __future__ import annotations
 

@@ -109,7 +109,7 @@ class _Running:
         task.add_done_callback(self._watching.discard)
 
     def end(self, last_words: str) -> None:
-        """End the process, and answer the requests that still wait with the line `last_words`."""
+        """End the process. Requests that still wait get the line `last_words` as their answer."""
         self._last_words = last_words
         self.process.terminate()
         for task in self._watching - {asyncio.current_task()}:

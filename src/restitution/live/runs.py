@@ -49,7 +49,7 @@ class Runs:
             else:
                 run_convergence(case, text, folder, ResultsFolder(out), grids, check)
         except BaseException as error:
-            # Keep the depths that were computed before an error that the user can fix.
+            # After an error that the user can fix, keep the results of the depths computed so far.
             if not (isinstance(error, RestitutionError) and (out / "results.nc").is_file()):
                 shutil.rmtree(out, ignore_errors=True)
                 raise

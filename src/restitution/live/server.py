@@ -115,7 +115,7 @@ class Server:
         policy = (
             "default-src 'none'; script-src 'self'; connect-src 'self'; "
             "img-src 'self' data: blob:; "
-            # The plotting library parses HTML with style attributes.
+            # Allow style attributes, because the plotting library parses HTML that contains them.
             f"style-src 'self' 'nonce-{nonce}'; style-src-attr 'unsafe-inline'; "
             "form-action 'none'; base-uri 'none'; frame-ancestors 'none'"
         )

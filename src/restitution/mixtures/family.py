@@ -135,9 +135,9 @@ class Family:
     def _velocities(self, radius: float) -> list[float]:
         """Velocities (m/s) of the case for the reduced `radius` (m).
 
-        They are the velocities of the mixture, and lower and higher ones as needed. At these
-        velocities the case covers the range of W/R*³ of all pairs of the family, where W is the
-        impact energy.
+        The velocities of the mixture are included. Lower and higher velocities are added if they
+        are needed to cover the range of W/R*³ of all pairs of the family, where W is the loading
+        work.
         """
         asked = self.mixture.velocities
         own = _particle(self.first, radius if self.second.wall else 2 * radius)

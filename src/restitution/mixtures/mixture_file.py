@@ -203,7 +203,7 @@ def _component(key: str, name: str, table: Any) -> Component:
     material = _validated(BodyTable, {**body, "radius": "flat"}, key)
     if radii and material.density is None:
         raise CaseError(
-            f"{key}.density: is missing; give it, because the impact velocity depends on it"
+            f"{key}.density: is missing; give it, because the impact energy depends on it"
         )
     order = sorted(range(len(radii)), key=radii.__getitem__)
     increasing, shares = (tuple(values[k] for k in order) for values in (radii, fractions))

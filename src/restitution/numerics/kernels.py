@@ -2,9 +2,10 @@
 
 Each time-critical operation is written twice: as a NumPy expression of whole arrays, which works on
 any device, and as a C++ loop that computes the same result in one pass over memory. Tests compare
-both.
+the results of the two versions.
+
 The loops form the module `restitution.numerics.loops`. If this module was not compiled or cannot be
-loaded, the NumPy expressions are used, which are several times slower.
+loaded, the NumPy expressions are used. The expressions are several times slower than the loops.
 
 The environment variable RESTITUTION_KERNELS is read once. The values "avx512", "avx2" and "plain"
 select the kernels compiled for that instruction set; "numpy" selects the NumPy expressions. By

@@ -77,8 +77,8 @@ def _limit(file: Path) -> float:
 def _of_address_space() -> float:
     """Memory (bytes) that the limit on the address space (`ulimit -v`) allows.
 
-    The limit also counts addresses that are reserved but occupy no memory. The size of these
-    addresses is subtracted from the limit.
+    The limit also counts address ranges that are reserved but occupy no memory. The size of these
+    ranges is subtracted from the limit.
     """
     try:
         import resource

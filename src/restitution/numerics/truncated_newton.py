@@ -127,9 +127,10 @@ def _newton_step(
     """Solve (K⁻¹ + k) x = −r approximately, with the gradient r and k = φ″.
 
     Returns x, K⁻¹x, whether a limit truncated the step, and whether the step met a direction of
-    negative curvature. `limits` are two numbers. The first is the radius of the trust region in the
-    norm (xᵀK⁻¹x)^½; it is infinite if there is no trust region yet. The second number limits the
-    change of u in a step along negative curvature as long as there is no trust region.
+    negative curvature. The step x is a change of the unknowns u. `limits` are two numbers. The
+    first is the radius of the trust region in the norm (xᵀK⁻¹x)^½; it is infinite if there is no
+    trust region yet. In this case, a direction of negative curvature ends the step. The second
+    number is the largest magnitude of the change of u along this direction.
     """
     radius, length = limits
     x, Sx, Hd, scaled = (np.zeros_like(r) for _ in range(4))

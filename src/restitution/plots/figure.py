@@ -34,7 +34,7 @@ GREY = "#7d858e"  # colour of reference curves, legible on light and dark pages
 
 @dataclass(frozen=True)
 class Axis:
-    """An axis: its quantity, unit, scale and ends (None: an end is chosen from the data)."""
+    """An axis: its quantity, unit, scale and ends. An end that is None is chosen from the data."""
 
     label: str
     unit: str = ""

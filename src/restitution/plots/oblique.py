@@ -37,8 +37,8 @@ def oblique_figure(results: xr.Dataset) -> Figure:
     """Plot tangential restitution, rebound and spin of the first body against the angle of impact.
 
     The dotted line marks the angle from which the whole contact slides (full slip). The dashed line
-    is the closed form for full slip. Both lines are drawn for the largest impact velocity, and only
-    if no body spins before the impact.
+    is the closed form of the tangential restitution in full slip. Both lines are drawn for the
+    largest impact velocity, and only if no body spins before the impact.
     """
     degrees = np.degrees(results["oblique_angle"].values)
     axis = Axis("angle of impact", "°", low=0.0, high=min(90.0, 1.05 * degrees.max() + 1))

@@ -20,9 +20,9 @@ def theory_figure(
 ) -> Figure:
     """Plot COR against velocity: one line for each theory, and the computed points of `law`.
 
-    Each of `lines` has a name, a flag that is true for fits, velocities (m/s) and COR. Lines
-    without a finite COR are left out. `marks` maps symbols to the velocities (m/s) of first yield
-    and of sticking.
+    Each of `lines` is a tuple: the name, whether the line is a fit, the velocities (m/s), and COR.
+    Lines without a finite COR are left out. `marks` maps symbols to the velocities (m/s) of first
+    yield and of sticking.
     """
     series: list[Series] = (
         [] if law is None else [computed_points(law, "computed", "computed, not resolved")]

@@ -1,7 +1,7 @@
 """Claims of the paper on each figure, compared with the results of the bundled studies.
 
-Each function in `CLAIMS` judges one claim. The function receives the studies by name, compares
-their results with its threshold for agreement, and returns a `Finding`.
+Each function in `CLAIMS` judges one claim. The function receives the studies by name, compares the
+results of the studies with a threshold for agreement, and returns a `Finding`.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ Studies = Mapping[str, xr.Dataset]
 Verdict = Literal["agrees", "agrees in part", "does not agree", "not decided"]
 
 # Values of the two steel spheres of the paper: reduced radius R* (m), contact modulus E* (Pa),
-# yield pressure p_y (Pa) and radius of each sphere (m). The constant R is the reduced radius. The
-# symbol R of the paper is taken as RADIUS.
+# yield pressure p_y (Pa) and radius of each sphere (m). In the code, R is the reduced radius. In
+# the claims of the paper, R is understood as the radius of each sphere (RADIUS).
 R, E_STAR, P_Y, RADIUS = 250e-6, 112e9, 750e6, 500e-6
 SMOOTH = "1 pm"  # rms roughness of cases that represent the smooth sphere
 _VARIABLES = ("indentation", "restitution", "force", "pull_off_force", "resolved")
@@ -260,8 +260,9 @@ def _single_nodes(flags: NDArray[np.bool_]) -> str:
 def critical_indentation(curve: Curve, smooth: Curve) -> float:
     """Depth (m) beyond which COR stays within 5 % of the smooth sphere's; NaN if not reached.
 
-    The result lies between the last depth with a larger difference and the next depth. There the
-    difference is interpolated linearly in the logarithm of depth.
+    The result lies between the last depth at which the difference exceeds 5 % and the next depth.
+    Between these depths, the difference is interpolated linearly in the logarithm of depth. If the
+    difference never exceeds 5 %, the result is the first depth.
     """
     off = np.abs(curve.cor / smooth.cor - 1)
     apart = np.flatnonzero(off > _NEAR)

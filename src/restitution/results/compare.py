@@ -26,9 +26,10 @@ class Comparison:
     Attributes:
         rows: A row for each compared depth. It contains `max_indentation_m`, `restitution_a`,
             `restitution_b`, the `difference` of COR (b minus a), and the `error` of this
-            difference, combined from the errors of both. `significant` says whether the difference
-            exceeds this error, and `resolved` whether both grids resolve the contact. `force_ratio`
-            is the force of b divided by that of a. Rows of studies also contain the swept values.
+            difference. This error is combined from the errors of a and b. `significant` says
+            whether the difference exceeds the error. `resolved` says whether both grids resolve the
+            contact. `force_ratio` is the force of b divided by the force of a. Rows of studies also
+            contain the swept values.
         inputs: The keys of the input files whose values differ, with the values in a and in b.
         notes: Remarks on the comparison.
     """
@@ -153,7 +154,7 @@ def _error(row: _Row) -> float:
 def _complete_cases(
     study: StudyResults,
 ) -> dict[tuple[tuple[str, str], ...], list[dict[str, float]]]:
-    """For the swept values of each complete case, return the rows of the curve of this case."""
+    """Map the swept values of each complete case to the rows of its curve."""
     return {
         tuple(case.swept.items()): case.curve.rows
         for case in study.cases

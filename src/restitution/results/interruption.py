@@ -34,8 +34,8 @@ def hold_signals() -> Iterator[None]:
     if not _depth:
         _received.clear()
         _install()
-    # Python handles no signal between `_depth += 1` and `try`, or between `_depth -= 1` and `if`.
-    # So no signal can leave a wrong `_depth` behind.
+    # Python cannot handle a signal between `_depth += 1` and `try`, or between `_depth -= 1` and
+    # `if`. Therefore a signal cannot leave a wrong value in `_depth`.
     _depth += 1
     try:
         yield

@@ -56,8 +56,8 @@ def curve_row(
 ) -> dict[str, float]:
     """Make the row of `curve.csv` for one state of loading, with NaN for undefined values.
 
-    `refine` is the refinement factor of the grid. `touch` (m) is added to the indentations, because
-    the bodies touch later on a coarse grid than on the finest grid.
+    `refine` is the refinement factor of the grid. `touch` (m) is the approach to first touch on
+    this grid minus the approach to first touch on the finest grid. It is added to the indentations.
     """
     patches = state.patch_sizes()
     median = median_patch(patches)

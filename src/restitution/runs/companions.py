@@ -1,8 +1,10 @@
 """Companion curves of a run: additional curves that show how COR changes with the input.
 
 All companion curves are computed on cells twice as large as those of the run, so each of them takes
-about a fifth of the time of the run. Some also have another surface or other materials. They are
-compared with the run at equal loading work, that is, at equal impact velocity.
+about a fifth of the time of the run. One companion curve has the surface and the materials of the
+run and is compared with the run. The other companion curves have another surface or other materials
+and are compared with the first companion curve. All comparisons are made at equal impact velocity,
+that is, at equal loading work if the masses are equal.
 """
 
 from __future__ import annotations
@@ -33,7 +35,8 @@ Array = NDArray[np.float64]
 SURFACES = 7  # number of additional surfaces from which the scatter is estimated
 _TOLERANCE = 0.005  # allowed error of COR due to the steps of adhesive unloading
 
-_LOSSLESS = 1e-6  # largest loss of an elastic impact relative to its loading work (rounding)
+# Energy losses up to this fraction of the loading work count as rounding errors of elastic impacts.
+_LOSSLESS = 1e-6
 
 # Two depths are added: the smallest depth times the first factor, and the largest depth times the
 # second factor. They are needed because other surfaces reach the same work at other depths.
@@ -132,7 +135,7 @@ class Companions:
             yield self._curve(self._coarse(self.case.variant(number)))
 
     def materials(self, work: Array) -> list[Array]:
-        """Changes of COR at `work` (J) due to the spread of library values.
+        """Changes of COR at `work` (J) due to the spread of values from the material library.
 
         Elasticity, yield model and density cause one change each, unless they have no spread. The
         values of both bodies are set together to the low end and then to the high end of the
@@ -193,7 +196,7 @@ def _yielding(case: Case) -> Yielding:
 
 
 def _spread(case: Case, end: str) -> Case:
-    """Return `case` with its library values at the `low` or `high` end of their spread."""
+    """Return `case` with its material-library values at the `low` or `high` end of their spread."""
 
     def moved(body: BodyTable) -> BodyTable:
         found = body.from_library()

@@ -2,8 +2,9 @@
 
     total² = restitution_error² + discretisation_error² + surface_scatter² + material_error²
 
-Errors are differences from the exact COR of the pair at the impact velocity of the row. The exact
-COR is the mean over surfaces of the same kind, on a grid that resolves all waves of the surface.
+A row holds the results of one depth. Errors are differences from the exact COR of the pair at the
+impact velocity of the row. The exact COR is the mean over surfaces of the same kind, on a grid that
+resolves all waves of the surface.
 ΔCOR is the change of COR on cells twice as large, without the shortest octave of waves
 (`companions`):
 
@@ -15,16 +16,16 @@ times as much as the last octave that the grid resolves. The formula assumes tha
 waves change COR by n ΔCOR. The safety factor is 1.5. For generated surfaces n = 0 and S = S_h,
 because their definition includes the shortest wave.
 
-D is the change of COR on cells of 2h if the yield pressure is multiplied by (S_2h/S)². Waves
+D is the change of COR on cells of size 2h if the yield pressure is multiplied by (S_2h/S)². Waves
 that a grid lacks raise the local pressure. Therefore, a contact may yield on a finer grid although
-it is elastic on cells of h and of 2h, where ΔCOR vanishes. q is the elastic share of the work
-stored and dissipated in loading. The factor q² reduces D where nodes already yield, because these
-nodes yield on a finer grid, too.
+it is elastic on cells of size h and 2h. ΔCOR then vanishes, and only D accounts for this yielding.
+q is the elastic energy stored in loading, divided by the sum of this energy and the plastic work.
+The factor q² reduces D if nodes already yield, because these nodes yield on a finer grid, too.
 
-f is the usual error of contacts with the same number of nodes in the median patch, the contact
-patch of the median contact node (docs/resolution.md). s is the fraction of f that is added. s is
-large if the grid does not resolve the contact. Otherwise s is small; it only keeps the error from
-vanishing by chance.
+f is the usual error of contacts whose median patch has the same number of nodes. Half of the
+contact nodes lie in patches of at least the size of the median patch (docs/resolution.md). s is the
+fraction of f that is added. s is large if the grid does not resolve the contact. Otherwise s is
+small, and its only purpose is to keep the error from vanishing by chance.
 
 The constants of these formulas were chosen on about 400 random cases, 30 of them adhesive, and
 checked on other cases (docs/error.md).
@@ -60,10 +61,10 @@ _SHARE_RESOLVED = 0.03
 _FEW_NODES, _SHARE_UNRESOLVED = (3, 7), (0.6, 0.1)
 # The error f of COR as a function of the number of nodes in the median patch. In about 90 % of the
 # contacts, the difference from the solution on a finer grid was below f. A patch of one node yields
-# late and all at once, so its COR may have almost any error.
+# late and all at once, so contacts with such patches may have almost any error of COR.
 _PATCH_NODES = (1, 3, 7, 14, 30, 100, 400)
 _PATCH_ERROR = (0.9, 0.4, 0.15, 0.08, 0.05, 0.024, 0.008)
-CONFIDENCE = 0.95  # of the interval of a mean COR over surfaces
+CONFIDENCE = 0.95  # level of the confidence interval of a mean COR over surfaces
 # Differences of COR between grids and between surfaces are smoothed over these lengths, in the
 # logarithm of the loading work, because single differences may vanish by chance.
 _NEAR_GRID, _NEAR_SURFACE = 2.0, 1.0
@@ -149,10 +150,10 @@ def widened_error(
 
 
 def scatter(restitution: Array, work: Array) -> Array:
-    """Error of the COR of one surface as an estimate of the mean COR of all surfaces of its kind.
+    """Error of COR if one surface represents the mean of all surfaces of its kind.
 
-    It is the difference of COR from its mean over the computed surfaces, plus half the width of the
-    95 % confidence interval of this mean.
+    The error is the difference between the COR of this surface and the mean COR of the computed
+    surfaces, plus half the width of the 95 % confidence interval of this mean.
 
     `restitution` has a row for each surface, the surface of the run first, and a column for each
     value of `work` (J). The errors are NaN if the curve of this surface or the curves of all others
@@ -169,10 +170,11 @@ def scatter(restitution: Array, work: Array) -> Array:
 def half_interval(surfaces: int) -> float:
     """Half the width of the 95 % confidence interval of the mean COR of `surfaces` surfaces.
 
-    It is given in sample standard deviations of COR between the surfaces: t/√n with Student's t.
-    NaN for one surface.
+    The result is divided by the sample standard deviation of COR over the surfaces. So it is t/√n,
+    with Student's t and the number n of surfaces. It is NaN for one surface.
     """
-    from scipy.special import stdtrit  # quantile of Student's t; scipy.stats takes 30 MB more
+    # stdtrit is the quantile of Student's t. Importing scipy.stats would take 30 MB more memory.
+    from scipy.special import stdtrit
 
     return float(stdtrit(surfaces - 1, 0.5 * (1 + CONFIDENCE))) / math.sqrt(surfaces)
 
@@ -209,10 +211,10 @@ def add_errors(
     """Add the errors due to grid, surface and materials, and their total, to the rows of a run.
 
     `surface` is the surface of the deepest depth. If `scattered` is false, the scatter between
-    surfaces is left out. A row whose loading work is not positive stays unchanged, because impacts
-    cannot have their maximum indentation at its depth. The total error of a row is set only if all
-    of its parts are known. Returns the errors due to waves that the grid leaves out, one for each
-    row with a positive loading work.
+    surfaces is left out. A row whose loading work is not positive stays unchanged, because the
+    depth of this row cannot be the maximum indentation of an impact. The total error of a row is
+    set only if all of its parts are known. Returns the errors due to waves that the grid leaves
+    out, one for each row with a positive loading work.
     """
     band: list[float] = []
     reached = [row for row in rows if row["loading_work_J"] > 0]
@@ -324,8 +326,8 @@ def _floor(row: Row) -> float:
 def _smoothed(values: Array, work: Array, near: float) -> Array:
     """Smooth `values` over the loading work (J); all NaN if any value is NaN.
 
-    The result is a weighted mean with the weights exp(−Δ/near), where Δ is the distance of two
-    values in ln(work).
+    The result is a weighted mean with the weights exp(−Δ/near). Here Δ is the difference of
+    ln(work) between two values.
     """
     L = np.log(work)
     weights = np.exp(-np.abs(L[:, None] - L) / near)

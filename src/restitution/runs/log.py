@@ -56,8 +56,8 @@ class RunLog:
     def warnings_of(self, part: ResultsFolder) -> Say:
         """Return a `warn` function for one of several runs.
 
-        The function passes on warnings that are issued before the first row of the run. It drops
-        warnings about the results of the run, because the summary of all runs replaces them.
+        The function passes on the warnings that are issued before the run has its first result. It
+        drops later warnings about the results, because the summary of all runs replaces them.
         """
 
         def say(warning: str) -> None:

@@ -91,6 +91,6 @@ def _resolves(case: Case, contact: Contact, depth: float) -> bool:
         patches = load_to(case, contact, depth).patch_sizes()
     except DomainError:  # the contact reaches the edge; the run will report this
         return True
-    except NotConvergedError:  # such as a jump of force or work, if too few nodes are in contact
+    except NotConvergedError:  # force or work may jump if too few nodes are in contact
         return False
     return median_patch(patches) >= _MARGIN * NODES_PER_PATCH

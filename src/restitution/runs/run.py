@@ -273,7 +273,7 @@ def _result_warnings(case: Case, contact: Contact, out: ResultsFolder, run: _Run
     """Yield the warnings about the results of the run."""
     depths = [row["max_indentation_m"] for row in out.rows]
     patches = [row["median_patch_nodes"] for row in out.rows]
-    # If the last row could not be written, there is one value more than there are rows.
+    # If the last row could not be written, `adhesive_nodes` has one value more than `out.rows`.
     nodes = run.adhesive_nodes[: len(depths)]
     unresolved = unresolved_patches(depths, patches) + unresolved_adhesion(depths, nodes)
     yield from map(message, unresolved)

@@ -20,7 +20,7 @@ from restitution.theory import FirstYield, Hertz
 # because eight nodes per contact radius already keep the error of COR below 0.3 %.
 _NODES = 80
 _WIDTH = 2.5  # ratio of the width of a grid to the predicted contact radius
-_DEPTHS = 20  # number of depths up to yield, and again beyond yield
+_DEPTHS = 20  # number of depths up to yield; the same number of depths is used beyond yield
 
 
 def smooth_curve(

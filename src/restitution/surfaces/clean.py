@@ -87,8 +87,8 @@ def remove_outliers(surface: Surface, threshold: float) -> Surface:
     height = surface.height
     step = np.abs(height - median_filter(height, _NEIGHBOURHOOD, mode="reflect"))
     deviation = _SIGMA * float(np.median(step))
-    # If the estimate is zero, at least half of the pixels equal the local median. Without a scale
-    # for the differences, no pixel counts as an outlier.
+    # If `deviation` is zero, at least half of the pixels equal their local median. A threshold in
+    # standard deviations is then meaningless, so no pixel counts as an outlier.
     out = step > threshold * deviation if deviation > 0 else np.zeros(height.shape, bool)
     count = int(np.count_nonzero(out))
     if count > _MOST * out.size:

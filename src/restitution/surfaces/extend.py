@@ -40,8 +40,9 @@ def extend(
         Extended surface. The `notice` in its provenance states that the surface is not the scan.
 
     Raises:
-        SurfaceError: An argument is invalid. A twin is also refused if the scan is flat, or if
-            along an axis it has fewer than 16 pixels or is at most two cells of the grid long.
+        SurfaceError: An argument is invalid, or the scan has no twin. A scan has no twin if it is
+            flat, has fewer than 16 pixels along an axis, or has an edge that is not longer than two
+            cells of the grid.
     """
     if how not in get_args(Extension):
         raise SurfaceError(f"how={how!r} is unknown; choose 'twin' or 'mirror'")

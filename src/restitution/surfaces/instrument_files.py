@@ -151,7 +151,8 @@ def _default_index(reader: Any, channels: list[Any]) -> int:
 
 
 def _is_height(channel: Any) -> bool:
-    # The unit alone does not suffice, because "A" can mean ampere or ångström.
+    # The unit alone does not prove that the values are heights, because "A" can mean ampere or
+    # ångström.
     is_length = in_metres(1.0, _value_unit(channel)) is not None
     return bool(channel.is_height_channel and is_length and channel.dim == 2)
 

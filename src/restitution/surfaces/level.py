@@ -49,7 +49,10 @@ def level(surface: Surface, how: Levelling) -> Surface:
 
 
 def _mean_curvature(paraboloid: Array, grid: Grid) -> float:
-    """Mean of the second derivatives of a paraboloid along x and y (1/m); 0 for few pixels."""
+    """Mean of the second derivatives of a paraboloid along x and y (1/m).
+
+    The result is 0 if the grid has fewer than 3 pixels along an axis.
+    """
     if min(paraboloid.shape) < 3:
         return 0.0
     along_x, along_y = paraboloid[:3, 0], paraboloid[0, :3]

@@ -28,8 +28,8 @@ from restitution.surfaces.text_files import TEXT_SUFFIXES, NotAMatrixError, read
 
 UndefinedPixels = Literal["error", "interpolate"]
 
-# Largest fraction of undefined pixels that are filled. Filling more pixels smoothly would distort
-# the statistics of the surface.
+# Undefined pixels are filled only if they are at most this fraction of all pixels. Filling more
+# pixels smoothly would distort the statistics of the surface.
 _LARGEST_FILL = 0.2
 # The size in the file and the argument `size` count as equal up to this relative difference.
 _SIZE_ROUNDING = 1e-6

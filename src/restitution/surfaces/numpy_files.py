@@ -46,8 +46,8 @@ def _load_arrays(
     try:
         _check_headers(path)
         if path.suffix.lower() == ".npy":
-            # Memory mapping compares the shape in the header with the length of the file. Loading
-            # would first allocate memory for this shape. A damaged header can state a huge shape.
+            # A damaged header can state a huge shape, and `np.load` would allocate memory for this
+            # shape. `open_memmap` instead compares the shape with the length of the file.
             return np.lib.format.open_memmap(path, mode="r"), (None, None), {"format": "npy"}
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as archive:
             key = _height_key(path, archive.files)

@@ -85,10 +85,11 @@ def left_out(surface: Surface, kept: Array, spacing: tuple[float, float]) -> dic
     removed by earlier resampling:
 
     - `removed_rms_m`: rms height of the removed waves
-    - `removed_slope`: rms slope of the removed waves divided by that of the original surface
+    - `removed_slope`: rms slope of the removed waves divided by the rms slope of the original
+      surface
     - `shortest_carried_m`: wavelength of the shortest remaining wave
-    - `pixel_x_m`, `pixel_y_m`: pixel size of `surface`; if an earlier resampling started from
-      larger pixels, their size
+    - `pixel_x_m`, `pixel_y_m`: pixel size of `surface`, or the pixel size before an earlier
+      resampling if the earlier pixels were larger
     """
     before = surface.provenance
     pixel = [

@@ -86,10 +86,10 @@ def _decode(path: Path) -> str:
 def _parse_rows(path: Path, data: list[tuple[int, str]], *, plain: bool) -> list[list[float]]:
     """Parse all lines. Raise `SurfaceError` for damaged lines.
 
-    Text after the first scan line counts as damage; other readers would silently skip it. Text
-    above the scan lines counts as damage if the comments show that the file is a matrix (`plain`)
-    or if the text is nearly a scan line (`_is_nearly_a_row`). Other text above the scan lines
-    raises `NotAMatrixError`.
+    Text after the first scan line counts as damage, because other readers would silently skip it.
+    Text above the scan lines counts as damage if the comments show that the file is a matrix
+    (`plain`) or if the text is nearly a scan line (`_is_nearly_a_row`). Other text above the scan
+    lines raises `NotAMatrixError`.
     """
     rows: list[list[float]] = []  # a line of text becomes an empty row
     first: NotAMatrixError | None = None

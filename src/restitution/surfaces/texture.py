@@ -143,7 +143,7 @@ def _decay_lags(R: Autocorrelation) -> Array:
 
 
 def _developed_area(surface: Surface) -> float:
-    """Sdr: the area of two triangles per cell divided by that of their projection, minus 1."""
+    """Sdr: the area of two triangles per cell divided by their projected area, minus 1."""
     z, (hx, hy) = surface.height, surface.grid.spacing
     if min(z.shape) < 2:
         return 0.0

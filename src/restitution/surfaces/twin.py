@@ -38,7 +38,7 @@ from restitution.surfaces.wave_spectrum import Modes, WaveSpectrum, spectrum_of
 LEAST_PIXELS = 16  # smallest number of pixels of a scan along each axis
 _UNADJUSTED = 0.01  # fraction of the scan's mean square height in waves that are not adjusted
 _FIRST_BAND = 2**20  # largest number of nodes of the grid for the band of the longest waves
-_LEAST_FIRST = 8  # smallest number of cells per edge of the scan, on the grid for these waves
+_LEAST_FIRST = 8  # smallest number of cells along a scan edge, on the grid for the longest waves
 
 # Largest number of adjustments of a band: _WORK divided by the number of nodes of the band's grid,
 # but at least the first and at most the second value of _ADJUSTMENTS.
@@ -49,7 +49,7 @@ _NEGLIGIBLE = 1e-3  # misfit of heights at which the adjustment ends
 _STANDSTILL = 0.05  # the adjustment ends if the misfit decreases by less than this fraction
 
 # Largest number of parts of the twin whose spectra are averaged and compared with the spectrum of
-# the scan. Each part is as large as the scan or, if the twin is smaller, as the twin.
+# the scan. Each part has the size of the scan. A twin smaller than the scan is compared as a whole.
 _PARTS = 16
 _COMPARED = 2**23  # largest total number of nodes of these parts; a single part may have more
 _UNLIKE = 0.5  # misfit of the spectrum above which the notice contains a warning
@@ -69,9 +69,9 @@ def twin(scan: Surface, grid: Grid, seed: int) -> Surface:
     The provenance describes the waves left out (`removed_…`) and contains the statistics of the
     scan (`scan_…`). It also contains `spectrum_misfit`, the root mean square of the relative
     difference between the spectra of twin and scan. The spectra are compared on parts of the
-    twin, in bands of a quarter octave. Each part is as large as the scan or, if the twin is
-    smaller, as the twin. The weight of a band is the sum of two fractions: its share of the mean
-    square height and its share of the mean square slope.
+    twin, in bands of a quarter octave. Each part has the size of the scan. A twin
+    smaller than the scan is compared as a whole. The weight of a band is the sum of two fractions:
+    its share of the mean square height and its share of the mean square slope.
 
     Raises `SurfaceError` for a scan that is flat or has fewer than 16 pixels along an axis, and for
     cells that are too large for any wave of the scan.
@@ -209,7 +209,7 @@ def _between(table: Array, at: Array) -> Array:
 
 
 def _nodes(most: tuple[int, int]) -> tuple[int, int]:
-    """Return the smallest grid that resolves `most` periods per axis and suits the FFT."""
+    """Return the smallest grid that resolves `most` periods per axis and has a fast FFT."""
     from scipy.fft import next_fast_len
 
     return (

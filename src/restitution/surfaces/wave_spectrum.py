@@ -109,13 +109,15 @@ def spectrum_of(scan: Surface, period: tuple[float, float]) -> WaveSpectrum:
 
 
 def _moments(spectrum: WaveSpectrum) -> Array:
-    """Mean square height and mean square slope (rows) for the powers P and P/k² (columns).
+    """Return the mean square height (row 1) and the mean square slope (row 2), shape (2, 2).
 
-    P = C (a + b/k²) is the power of `spectrum`, where k is the size of the scan divided by the
-    wavelength. The coefficients a and b are the fields `flat` and `steep`. Slopes are differences
-    between neighbouring pixels, as in `rms_slope`. Long waves are summed one by one, over the wave
-    vectors of the twin. Short waves are summed over the wave vectors of the scan. The scan has
-    fewer wave vectors than the twin, because the scan is not larger than the period of the twin.
+    The waves have the mean square heights P in column 1 and P/k² in column 2. P is C (a + b/k²), or
+    0 where this product is negative (see `WaveSpectrum.power`), and k is the size of the scan
+    divided by the wavelength. The coefficients a and b are the fields `flat` and `steep` of
+    `spectrum`. Slopes are differences between neighbouring pixels, as in `rms_slope`. Long waves
+    are summed one by one, over the wave vectors of the twin. Short waves are summed over the wave
+    vectors of the scan. The scan has fewer wave vectors than the twin, because the scan is not
+    larger than the period of the twin.
     """
     wx, wy = spectrum.waves
     (mx, my), (hx, hy) = spectrum.density.shape, spectrum.pixel

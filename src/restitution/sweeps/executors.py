@@ -142,8 +142,7 @@ def cluster_workers(address: str) -> Iterator[Workers]:
         from distributed import Client, Queue
     except ImportError:
         raise OutputError(
-            "scheduler: Dask is not installed; to install it, run in a checkout "
-            '`pip install ".[cluster]"`'
+            'scheduler: Dask is not installed; run `pip install ".[cluster]"` in a checkout'
         ) from None
     try:
         client = Client(address, timeout=PATIENCE, set_as_default=False)

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from ._inputs import Array, Values
 
-# Largest number of iterations. About 10 are usual. Bisection alone would need about 100 for a root
-# of 1e-14 in [0, 1].
+# Largest number of iterations. Usually about 10 suffice. Bisection alone would need about 100 for
+# a root of 1e-14 in [0, 1].
 _MAX_STEPS = 200
 _EXACT = 2 * np.finfo(float).eps  # relative width of a converged bracket
 

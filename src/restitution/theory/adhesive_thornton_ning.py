@@ -10,8 +10,8 @@ velocity V_s of `JKR`, the yield velocity V_y of `FirstYield` and the restitutio
 e is continuous at V_y, where e_p = 1. It rises from 0 at V_s to a peak above V_y and then falls.
 
 The sum of the two losses is an assumption: each loss is computed as if the other were absent. The
-adhesive loss is computed with the undeformed radius R*. But yielding flattens the surfaces: their
-reduced radius R_p exceeds R*, and detaching the flatter contact takes more work (∝ R_p^{4/3}).
+adhesive loss is computed with the undeformed radius R*. But yielding flattens the surfaces to a
+reduced radius R_p > R*, and detaching the flatter contact takes more work (∝ R_p^{4/3}).
 Yielding caused by adhesion alone is neglected. So e is an upper estimate, accurate if the adhesive
 loss is small at first yield (V_s ≪ V_y).
 
@@ -20,8 +20,8 @@ up to V_y (e = 0); above V_y the result is NaN. An example is a sphere of ammoni
 (radius 2.45 μm, density 1350 kg/m³, E = 1.2 GPa, w = 0.2 J/m², p_y = 35.3 MPa) on a wall with
 E = 182 GPa (ν = 0.3 for both bodies): V_s = 0.567 m/s, V_y = 0.183 m/s.
 
-The law also requires what `ThorntonNing` and `JKR` require: quasi-static normal impacts of smooth
-spheres and a large Tabor parameter.
+Like `ThorntonNing` and `JKR`, the law requires quasi-static normal impacts of smooth spheres. Like
+`JKR`, it requires a large Tabor parameter.
 Units, shapes and errors are those of `restitution.theory`.
 """
 

@@ -5,7 +5,7 @@ modulus (their E′), Y the yield strength of a tensile test (their S_y), ν Poi
 indentation and ω* = ω/ω_c. The force P and the contact area A = πa² are:
 
     C = 1.295 exp(0.736 ν),  ω_c = (πCY/2E*)² R*,  P_c = 4/3 (R*/E*)² (πCY/2)³,  A_c = πR*ω_c
-    ω* ≤ 1.9    P/P_c = ω*^{3/2},  A/A_c = ω*: Hertz, although yield begins inside at ω* = 1
+    ω* ≤ 1.9    P/P_c = ω*^{3/2},  A/A_c = ω* (Hertz). Yield begins below the surface at ω* = 1
     ω* > 1.9    P/P_c = exp(−ω*^{5/12}/4) ω*^{3/2} + 4H_G/(CY) [1 − exp(−ω*^{5/9}/25)] ω*
                 A/A_c = ω* (ω*/1.9)^B,  B = 0.14 exp(23 Y/E*)
                 H_G/Y = 2.84 [1 − exp(−0.82 (a/R*)^{−0.7})]
@@ -95,7 +95,7 @@ class JacksonGreen:
     def contact_radius(self, indentation: Values) -> Array:
         """Contact radius on first loading.
 
-        The finite-element data of the fit end at 0.412 R*.
+        The fit is based on finite-element results with contact radii up to 0.412 R*.
 
         Args:
             indentation: Approach δ of the spheres (m).

@@ -47,12 +47,12 @@ Sci. 58 (1977) 2–13):
 
     μ = (R*w²/(E*²z₀³))^{1/3}
 
-JKR holds for μ > 5. For μ < 0.1 the contact follows the theory of Derjaguin, Muller and Toporov
-(DMT), or the spheres are rigid (Johnson & Greenwood, J. Colloid Interface Sci. 192 (1997) 326–333).
-As μ grows, the pull-off force approaches its JKR value long before the jump into contact does,
-because forces of finite range act before first touch. So a larger μ is needed for an accurate W_s
-than for an accurate pull-off force (Ciavarella, Greenwood & Barber, J. Mech. Phys. Solids 98 (2017)
-236–244). Small hard particles have a small μ, and their sticking velocity is below V_s.
+JKR holds for μ > 5. For μ < 0.1 the theory of Derjaguin, Muller and Toporov (DMT) or the theory of
+rigid spheres holds (Johnson & Greenwood, J. Colloid Interface Sci. 192 (1997) 326–333).
+Forces of finite range act before first touch and change the jump into contact. So a larger μ is
+needed for an accurate W_s than for an accurate pull-off force (Ciavarella, Greenwood & Barber, J.
+Mech. Phys. Solids 98 (2017) 236–244). Small hard particles have a small μ, and their sticking
+velocity is below V_s.
 Units, shapes and errors are those of `restitution.theory`.
 """
 
@@ -240,7 +240,7 @@ class JKR(PositiveFields):
         return scalar_or_array(np.where(np.asarray(indentation) <= 0, 0.0, W_l))
 
     def unloading_work(self, indentation: Values) -> Array:
-        """Work that the contact returns on unloading from an indentation until it breaks.
+        """Work that the contact returns on unloading from an indentation to the break.
 
         For δ ≥ 0 this work equals `loading_work` minus `hysteresis_loss`.
 

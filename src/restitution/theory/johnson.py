@@ -13,11 +13,11 @@ Johnson sets p_d = 3Y, the indentation pressure of a material of yield strength 
 
 The printed coefficient 3.8 is used here, although the equation for e² gives 3.74.
 
-Valid for fully developed plastic flow, at E*a/YR* > 30 or so (his section 6.3). This corresponds to
-e < 0.6 for any material, and to V > 190 V_y, where V_y is `FirstYield.velocity` at p_y = 1.6 Y. At
-lower velocity the contact pressure is below 3Y and the formula overestimates e. It gives e = 1 at
-28.5 V_y; at lower velocities e is limited to 1. The formula also requires a ≪ R*, which limits the
-velocity from above. Rate effects on p_d are neglected.
+Valid for fully developed plastic flow, at E*a/YR* > 30 or so (his section 6.3). This range
+corresponds to e < 0.6 for any material, and to V > 190 V_y, where V_y is `FirstYield.velocity` at
+p_y = 1.6 Y. At lower velocity the contact pressure is below 3Y and the formula overestimates e. It
+gives e = 1 at 28.5 V_y; at lower velocities e is limited to 1. The formula also requires a ≪ R*,
+which limits the velocity from above. Rate effects on p_d are neglected.
 Units, shapes and errors are those of `restitution.theory`.
 """
 

@@ -17,8 +17,8 @@ Valid under four conditions:
 - The contact is frictionless, or the half-space is incompressible.
 - The range of the surface forces is much shorter than the displacement (2πwa/E*)^½.
 - The radius a is much smaller than the bodies.
-- The punch is rigid; or it is elastic, E* includes its compliance, and the influence of its side
-  walls is negligible.
+- The punch is rigid. An elastic punch is also allowed if E* includes the compliance of the punch
+  and the influence of its side walls is negligible.
 
 Units, shapes and errors are those of `restitution.theory`.
 """

@@ -85,8 +85,8 @@ class LennardJones(PositiveFields):
         """Constant traction 0.548 w/z₀ (Pa) of the Dugdale law that matches this law.
 
         Both laws have the same work of adhesion w and the same integral ∫σ² dg of the squared
-        traction. With this traction the pull-off force of `MaugisDugdale` agrees with that of the
-        Lennard-Jones law within 1.5 %. With the largest traction σ₀ the pull-off force is up to
+        traction. With this traction, `MaugisDugdale` gives the pull-off force of the Lennard-Jones
+        law within 1.5 %. With the largest traction σ₀ the pull-off force is up to
         5.4 % too small (docs/adhesion.md).
         """
         factor = 64 / 9 * (1 / 5 - 2 / 11 + 1 / 17)

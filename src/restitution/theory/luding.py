@@ -1,11 +1,11 @@
-"""Luding (2008): linear springs with plastic loading, an elastic limit and linear adhesion.
+"""Luding (2008): linear springs, plastic up to a limit indentation, with linear adhesion.
 
-S. Luding, Granular Matter 10 (2008) 235–246, eqs. 6–8. The limit branch follows A. Singh, V.
-Magnanimo, S. Luding, arXiv:1503.03720. The constants are the stiffnesses k₁ (plastic loading), k̂₂
-(elastic limit) and k_c (adhesion), and the plasticity depth φ_f. Beyond the indentation δ*, loading
-is elastic. d = δ_max is the largest indentation and x = d/δ*. k₂ is the unloading stiffness and δ₀
-the residual indentation. W_l is the loading work, W_u the work that the contact returns on
-unloading, and V the impact velocity:
+S. Luding, Granular Matter 10 (2008) 235–246, eqs. 6–8. Loading is plastic up to the limit
+indentation δ*. Beyond δ* it is elastic. This limit branch follows A. Singh, V. Magnanimo, S.
+Luding, arXiv:1503.03720. The constants are the stiffnesses k₁ (plastic loading), k̂₂ (limit branch)
+and k_c (adhesion), and the plasticity depth φ_f. d = δ_max is the largest indentation and x = d/δ*.
+k₂ is the unloading stiffness and δ₀ the residual indentation. W_l is the loading work, W_u the work
+that the contact returns on unloading, and V the impact velocity:
 
     limit       δ* = k̂₂/(k̂₂ − k₁) φ_f 2R*,  with the residual indentation δ₀* = φ_f 2R*
     unloading   F = k₂(δ − δ₀),  k₂ = k₁ + (k̂₂ − k₁) min(x, 1),  δ₀ = min((1 − k₁/k₂) d, δ₀*)
@@ -16,7 +16,7 @@ unloading, and V the impact velocity:
 
 2R* is Luding's 2a₁a₂/(a₁ + a₂): the radius of each of two equal spheres, or twice the radius of a
 sphere on a wall. Without adhesion e = (k₁/k₂)^½ falls with growing d to its minimum (k₁/k̂₂)^½ at
-d = δ*. Beyond δ* it rises, because the limit branch is elastic.
+d = δ*. Beyond δ*, e rises because the limit branch is elastic.
 
 With k_c > 0 the contact ends at δ = 0; with k_c = 0 it ends at δ₀, where F = 0. The law is
 quasi-static: the viscous term γ₀v of the paper is left out. The stiffnesses are parameters to be
@@ -51,7 +51,7 @@ class Luding:
     Attributes:
         radius: Reduced radius R* (m).
         loading_stiffness: Stiffness k₁ of plastic loading (N/m).
-        limit_stiffness: Stiffness k̂₂ of the elastic limit (N/m), at least k₁. If it equals k₁,
+        limit_stiffness: Stiffness k̂₂ of the elastic limit branch (N/m), at least k₁. If k̂₂ = k₁,
             the law is elastic.
         adhesive_stiffness: Stiffness k_c of the adhesive branch (N/m), at least 0.
         plasticity_depth: Plasticity depth φ_f (dimensionless): the largest residual indentation

@@ -2,12 +2,13 @@
 
 D. Maugis, J. Colloid Interface Sci. 150 (1992) 243–269; K. L. Johnson, J. A. Greenwood, J. Colloid
 Interface Sci. 192 (1997) 326–333. The attraction σ₀ acts in the ring a < r < c around the contact
-area of radius a. In this ring the gap is below w/σ₀, where w is the work of adhesion. With
-K = 4/3 E*, the parameter λ = 2σ₀ (R*/(πwK²))^{1/3} and the dimensionless quantities
+area of radius a. In this ring the gap is below w/σ₀, where w is the work of adhesion. The
+transition parameter is λ = 2σ₀ (R*/(πwK²))^{1/3} with K = 4/3 E*. The other dimensionless
+quantities are
 
-    ā = a (K/(πwR*²))^{1/3},   F̄ = F/(πwR*),   m = c/a,
+    ā = a (K/(πwR*²))^{1/3},   F̄ = F/(πwR*),   m = c/a.
 
-the contact radius ā determines m and the force:
+At a contact radius ā, the first equation below gives m and the second gives the force F̄:
 
     1 = λā²/2 [(m² − 1)^½ + (m² − 2) arcsec m] + 4λ²ā/3 [(m² − 1)^½ arcsec m − m + 1]
     F̄ = ā³ − λā² [(m² − 1)^½ + m² arcsec m]

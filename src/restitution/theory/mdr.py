@@ -11,8 +11,8 @@ half-space, replaces the elastic half-space. With x = δ_max/R, E* = E/(1 − ν
     yield       at δ_Y, where Hertz's mean pressure 4E*(δ/R)^½/3π reaches p_Y
     loading     Hertz up to δ_Y, then  F = πp_Ya²,  a² = 2Rδ − δ² + δ_Y² − δ_YR
     unloading   An elliptical indenter of width 2a and height A = 4p_Ya/E* is pulled out of the
-                transformed half-space. The depth of the indenter falls from d_e = A/2 at full load
-                to δ_e = ½A(1 − cos θ):
+                transformed half-space. The penetration δ_e of the indenter starts at d_e = A/2
+                under full load and falls as δ_e = ½A(1 − cos θ):
                 F = ½E*Aa (θ − sin θ cos θ),  δ_e = d_e [1 − (δ_max − δ)/(d_e + δ_R)]
                 The elastic recovery of the sphere is d_e + δ_R, where δ_R < 0 is a correction for
                 the finite size of the sphere:
@@ -136,8 +136,8 @@ class MDR:
     def loading_work(self, indentation: Values) -> Array:
         """Work done from first touch to an indentation on first loading.
 
-        Up to `yield_indentation` the work is that of Hertz. Beyond it, the force is integrated by
-        Gauss–Legendre quadrature.
+        Up to `yield_indentation` the work is the elastic energy of the Hertz contact. Beyond
+        `yield_indentation` the force is integrated by Gauss–Legendre quadrature.
 
         Args:
             indentation: Indentation δ of the sphere (m).
@@ -258,17 +258,18 @@ class MDR:
         return self.elastic.stored_energy(np.minimum(d, d_Y)) + half * forces
 
     def _elastic_depth(self, d: Values) -> Array:
-        """Depth d_e (m) of the elliptical indenter in the transformed half-space at full load.
+        """Penetration d_e (m) of the indenter into the transformed half-space at full load.
 
-        This depth is half the height of the indenter. `d` is the indentation of the sphere.
+        d_e is half the height of the elliptical indenter. `d` is the indentation of the sphere.
         """
         return 2 * self.yield_pressure(d) * self._contact_radius(d) / self.elastic.contact_modulus
 
     def _recovery(self, d: Values) -> Array:
         """Elastic recovery d_e + δ_R (m) on unloading from the indentation `d`.
 
-        d_e is the depth of the indenter at full load (`_elastic_depth`), and δ_R corrects it for
-        the finite size of the sphere. The code uses F_max/(2πGa²d_e) = E*/(4Ga) = 1/(2a(1 − ν)).
+        d_e is the penetration of the indenter at full load (`_elastic_depth`). δ_R is a correction
+        for the finite size of the sphere. The code uses
+        F_max/(2πGa²d_e) = E*/(4Ga) = 1/(2a(1 − ν)).
         """
         a, d_e, nu = self._contact_radius(d), self._elastic_depth(d), self.poissons_ratio
         z = self.radius - d + d_e
@@ -279,8 +280,9 @@ class MDR:
     def _returned(self, d: Values) -> Array:
         """Unloading work W_u (J) from the indentation `d`.
 
-        Beyond yield it is (1 + δ_R/d_e) E*A²B/12. A is the height, B = 2a the width and d_e = A/2
-        the depth of the indenter; d_e + δ_R is the elastic recovery.
+        Beyond yield W_u = (1 + δ_R/d_e) E*A²B/12, where A is the height of the indenter and B = 2a
+        is its width. The penetration at full load is d_e = A/2, and d_e + δ_R is the elastic
+        recovery.
         """
         E_star = self.elastic.contact_modulus
         plastic = 2 / 3 * E_star * self._elastic_depth(d) * self._contact_radius(d)

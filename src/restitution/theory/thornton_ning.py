@@ -1,7 +1,7 @@
 """Thornton & Ning (1998): elastic, perfectly plastic spheres, here without adhesion.
 
 `AdhesiveThorntonNing` adds adhesion. C. Thornton, Z. Ning, Powder Technology 99 (1998) 154–162; the
-plastic law is that of Thornton, J. Appl. Mech. 64 (1997) 383–386. The law cuts off the Hertz
+plastic law was published by Thornton, J. Appl. Mech. 64 (1997) 383–386. The law cuts off the Hertz
 pressure at the yield pressure p_y and does not restore equilibrium, so the contact radius a still
 follows a² = R*δ. The index y marks values at first yield. The relative indentation is x = δ/δ_y and
 the relative force f = F/F_y. The works W are in units of F_y δ_y:
@@ -18,10 +18,10 @@ Restitution depends on x alone, or equivalently on v = V/V_y alone, because f² 
 x to v exactly.
 
 Valid for quasi-static, normal, frictionless impacts of smooth spheres with a ≪ R*. Up to yield the
-law is Hertz. Beyond yield its force is smaller than that of a contact in equilibrium at the same
-p_y. The difference grows with depth: the area of a real yielded contact tends to 2πR*δ, whereas
-this law keeps the area πR*δ. p_y is a contact pressure, as in `FirstYield`, and not the yield
-strength.
+law is Hertz. Beyond yield, a contact that restores equilibrium at the same p_y carries a larger
+force. The difference grows with depth, because the area of a real yielded contact tends to 2πR*δ,
+whereas this law keeps the area πR*δ. p_y is a contact pressure, as in `FirstYield`, and not the
+yield strength.
 Units, shapes and errors are those of `restitution.theory`.
 """
 

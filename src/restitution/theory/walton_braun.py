@@ -10,8 +10,8 @@ and reloading have a larger stiffness k₂, which may grow with the largest forc
 Here k_u and S are constants, δ_max is the largest indentation, and unloading ends at the residual
 indentation δ₀. The paper uses two special cases. With S = 0 the unloading stiffness is constant and
 e = (k₁/k_u)^½ at any velocity. With k_u = k₁ the unloading stiffness grows from k₁ and
-e = (1 + S V (m*/k₁)^½)^{−½}; the paper writes (m*/k₁)^½ as 1/ω₀ with ω₀ = (2k₁/m)^½, for two equal
-spheres of mass m.
+e = (1 + S V (m*/k₁)^½)^{−½}. The paper considers two equal spheres of mass m and writes (m*/k₁)^½
+as 1/ω₀, where ω₀ = (2k₁/m)^½.
 
 The contact ends where F returns to zero, at δ₀ > 0, not at δ = 0. There is no adhesion. The
 stiffnesses are parameters to be fitted; R* and E* do not enter.

@@ -36,7 +36,8 @@ Code = Literal[
 class Finding:
     """The result of a check: its code and its values by name (SI units).
 
-    The function that returns a finding documents the values. `values` is read-only.
+    The docstring of the function that returns the finding explains its values. `values` is
+    read-only.
     """
 
     code: Code

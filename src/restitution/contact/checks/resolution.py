@@ -83,8 +83,8 @@ def tabor_parameter(state: State) -> float:
 def radius_of_asperities(state: State) -> float:
     """Radius of curvature (m) of the asperities in contact.
 
-    It is the inverse of the curvature of the undeformed gap, averaged over the nodes in contact. It
-    is at most R*, the value for smooth spheres.
+    The curvature of the undeformed gap is averaged over the nodes in contact. The radius is the
+    inverse of this average, but at most R*, the value for smooth spheres.
     """
     contact, box = state.contact, state.box
     hx, hy = contact.grid.spacing

@@ -17,9 +17,10 @@ points of its surfaces approach at the same velocity (not tested in Drake).
 A geometry has only one k and one d. So in a scene with three types of bodies, the pairs of types
 cannot all have their own k and d.
 
-In Drake 1.51, a continuous plant (`time_step=0`) reproduces the exported e. A discrete plant loses
-additional energy because of its time step. With its SAP approximation, a discrete plant ignores d
-and damps contacts strongly for numerical reasons, so that e is close to 0.
+A plant (`MultibodyPlant`) is Drake's system of bodies. In Drake 1.51, a continuous plant
+(`time_step=0`) reproduces the exported e. A discrete plant loses additional energy because of its
+time step. With the contact approximation `sap`, a discrete plant ignores d. It then damps contacts
+strongly for numerical reasons, so that e is close to 0.
 """
 
 from __future__ import annotations

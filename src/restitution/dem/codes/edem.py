@@ -3,9 +3,9 @@
 The tables were not tested in EDEM. EDEM's Hertz–Mindlin model has Tsuji's damping with the
 coefficient of Antypov & Elliott (Altair's documentation). EDEM's hysteretic spring model is that of
 Walton & Braun, with the loading stiffness K1 and the unloading stiffness K2. K1 is
-5 R* min(Y1, Y2), where Y1 and Y2 are the yield strengths. The coefficient of restitution
-(K1/K2)^½ of this model is the same at every velocity, whereas that of the law is not. So the
-exported K2 holds at one velocity only.
+5 R* min(Y1, Y2), where Y1 and Y2 are the yield strengths. The coefficient of restitution of this
+model, (K1/K2)^½, is the same at every velocity. The coefficient of restitution of the exported law
+depends on the velocity. So the exported K2 holds at one velocity only.
 """
 
 from __future__ import annotations

@@ -29,7 +29,9 @@ LOWEST = 0.001  # smallest e that is reproduced within 0.5 %, with `STEPS` time 
 FRAGMENT, COLLISION, PACKING = "restitution.lmp", "collision.in", "packing.in"
 _PACKING_STEPS = 50  # number of time steps in the shortest contact of the packing
 _GRAINS = 500  # number of spheres of the packing
-_FALLS = 0.25  # ratio of the duration of the run to the falling time of the highest sphere
+# Duration of the run, as a fraction of the time in which the highest sphere would reach the wall at
+# its initial velocity. Gravity makes the spheres faster.
+_FALLS = 0.25
 _FILLED = 0.12  # fraction of the initial volume that the spheres fill
 KOKKOS = "restitution_kokkos.lmp"
 _ENDS = (

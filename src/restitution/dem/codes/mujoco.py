@@ -52,9 +52,10 @@ _COARSE = 50  # number of time steps in a softened contact
 class Contact:
     """Durations (s) and damping ratio ζ (dimensionless) of the contact of a pair.
 
-    `duration` is the duration of an elastic Hertz contact. `soft_duration` is the duration of a
-    softened contact, whose largest overlap is the fraction `_DEEPEST` of the smaller radius.
-    `ratio` is ζ.
+    `duration` is the duration of an elastic Hertz contact. It is longer if the acceleration would
+    otherwise exceed `_LARGEST`. `soft_duration` is the duration of a softened contact, which allows
+    longer time steps. Without damping, the largest overlap of this contact is the fraction
+    `_DEEPEST` of the smaller radius. `ratio` is ζ.
     """
 
     pair: Pair

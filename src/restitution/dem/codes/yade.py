@@ -12,8 +12,8 @@ differs by less than 10⁻⁵ from the required e. With the coefficients c_k in 
 
 YADE computes E* from the two materials. On a wall, YADE uses R/2 for R*, which makes the contact
 softer by a factor of √2 and does not change e. Each contact has its own `betan`. The exported
-function `follow` can set it at first touch according to the impact velocity V, so that e follows
-the law e(V).
+function `follow` can set `betan` at first touch according to the impact velocity V, so that e
+follows the law e(V).
 """
 
 from __future__ import annotations

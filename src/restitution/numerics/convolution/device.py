@@ -157,7 +157,7 @@ class _Compiled(_LibraryDevice):
         workspace: Array,
         out: Array,
     ) -> None:
-        # The compiled transforms need periods without prime factors other than 2, 3, 5 and 7.
+        # The compiled transforms need periods that have only the prime factors 2, 3, 5 and 7.
         if not all(is_fast(period) for period in periods):
             super().convolve(values, spectrum, periods, scale, workspace, out)
             return

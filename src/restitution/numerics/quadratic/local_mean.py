@@ -51,7 +51,10 @@ def damp_local_mean(r: Array, share: float, places: int, out: Array) -> None:
 
 
 def _hat_weights(r: Array, places: Array) -> list[Array]:
-    """Linear weights of the nodes of `r` at the places: a matrix along x and a matrix along y."""
+    """Hat functions of the places, evaluated at the nodes of `r`.
+
+    Returns one matrix for each axis, shape (nodes, places) along this axis.
+    """
     hats = []
     for n, m in zip(r.shape, places.shape, strict=True):
         node, place = (np.cumsum(np.ones_like(places, shape=k)) for k in (n, m))

@@ -113,8 +113,8 @@ def minimise_quadratic(
        far as the bounds allow. So an iteration takes one product, and no step raises the energy.
     2. The direction is not reset when nodes reach or leave a bound. Polak–Ribière's β is limited to
        the range from zero to the β of Fletcher and Reeves (Gilbert and Nocedal 1992, SIAM J. Optim.
-       2, 21–42). The direction includes the trial length, so β is then multiplied by the last
-       change of this length.
+       2, 21–42). The direction contains the trial length as a factor. So β is also multiplied by
+       the factor by which the trial length last changed.
     3. The projected gradient is preconditioned by an approximate inverse of K. This inverse may be
        unsymmetric and may give an ascent direction.
     4. If the preconditioned gradient makes no progress, one step follows the gradient itself. So

@@ -56,14 +56,14 @@ _PLACES = 8  # number of places along each axis for which local means are comput
 
 # In a nearly fully plastic contact, the gradient is used to correct the contact edge of a guess.
 # The guess is corrected if at most the fraction _MAX_FREE_FRACTION of the contact nodes is strictly
-# between the bounds. A pressure at one node alone could make the gradient at this node zero. The
-# correction is the fraction _GAP_FRACTION of this pressure. Any fraction from 0.15 to 0.5 works
-# nearly as well.
+# between the bounds. The pressure at a node changes by the fraction _GAP_FRACTION of −g/K₀₀. Here g
+# is the gradient at the node and K₀₀ the diagonal of K. The full change −g/K₀₀ would make g zero if
+# no other pressure changed. Any fraction from 0.15 to 0.5 works nearly as well.
 _MAX_FREE_FRACTION, _GAP_FRACTION = 0.05, 0.3
-# Let M be the approximate inverse of K. The damping factor of the local mean is _USUAL_STIFFNESS,
-# divided by the Rayleigh quotient of K·M for a constant on the free nodes (those strictly between
-# the bounds). The largest (weakest) damping factor that still saves time is _MAX_DAMPING_FACTOR. If
-# the factor is larger, the local mean is not damped.
+# The damping factor of the local mean is the smaller of 1 and _USUAL_STIFFNESS/q. Here q is an
+# estimated Rayleigh quotient of K·M for a vector that is constant on the free nodes (those strictly
+# between the bounds), and M is the approximate inverse of K. If the factor is larger than
+# _MAX_DAMPING_FACTOR, damping saves no time, and the local mean is not damped.
 _USUAL_STIFFNESS, _MAX_DAMPING_FACTOR = 3.5, 0.7
 
 
@@ -81,8 +81,8 @@ def solve_multilevel(
     `operators` builds K and its approximate inverse. `b` has shape (nx, ny); `upper` is a number or
     an array of this shape. `tolerance` limits the violation of the optimality conditions and has
     the units of `b`. `periodic` states whether the operators are periodic. With periodic operators,
-    the fine problem is solved on the whole grid, and only grids of even size are coarsened. Their
-    approximate inverse is nearly exact, so it is used without damping.
+    the fine problem is solved on the whole grid, and only grids of even size are coarsened. The
+    approximate inverse of a periodic K is nearly exact, so it is used without damping.
 
     Return the result and the number of products with K on the finest grid. If the solve does not
     converge, `converged` of the result is False; no exception is raised.

@@ -60,9 +60,9 @@ def solve_near_guess(
     the violation. The largest violation often occurs at a few nodes that hardly affect the result.
 
     The window includes the nodes where the guess has pressure. It also includes the nodes where the
-    bodies overlap if they are displaced as on the coarser grid. The other nodes are neither solved
-    nor checked. Return the result on the window, the window, and the number of products with K on
-    the window.
+    displacement K p from the coarser grid is too small to separate the bodies. The other nodes are
+    neither solved nor checked. Return the result on the window, the window, and the number of
+    products with K on the window.
     """
     size = b.shape[0], b.shape[1]
     p, displacement, window = np.zeros_like(b), np.zeros_like(b), None
@@ -125,8 +125,9 @@ def _solve_from(
 
 
 def add_short_waves(guess: Array, displacement: Array, inverse: Operator, b: Array) -> Array:
-    """Add the pressure −`inverse` (K p − b) to the guess p, and keep p ≥ 0 and the local means.
+    """Add the pressure −`inverse` (K p − b) to the guess p.
 
+    The result has no negative pressure, and nearly the same local means as the guess.
     `displacement` is K p from the coarser grid, so it lacks only short waves. It is overwritten.
     """
     p: Any = guess.astype(np.float32)

@@ -146,8 +146,8 @@ class _Bracket:
     def following(self, x: float, y: float, uncertainty: float) -> float:
         """Return the next argument to try.
 
-        `y` is the latest function value. It belongs to an unknown point within the distance
-        `uncertainty` from the latest argument `x`.
+        `y` is the latest function value, computed for the argument `x`. Because of the error of
+        `y`, its true argument is unknown, but within the distance `uncertainty` from `x`.
         """
         if y > 0:
             self._high = min(self._high, x + uncertainty)
