@@ -67,7 +67,7 @@ def check(
     deepest = deepest_indentation(read)
     require_possible(contact, deepest)
     with errors.status("checking the surface"):
-        warnings = input_warnings(contact, deepest)
+        warnings = input_warnings(contact, deepest, read.prescribed)
         if read.interface.adhesion is None and contact.adhesive:
             warnings += no_range(contact)
     for warning in warnings:

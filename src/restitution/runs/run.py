@@ -111,7 +111,7 @@ def run_case(
         case = with_chosen_adhesion(case, contact, run.warn)
         deepest = deepest_indentation(case)
         require_possible(contact, deepest)
-        for warning in omissions(case) + input_warnings(contact, deepest):
+        for warning in omissions(case) + input_warnings(contact, deepest, case.prescribed):
             run.warn(warning)
         with out.tables():
             failure = _load_and_unload(
