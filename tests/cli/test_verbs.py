@@ -208,6 +208,12 @@ def test_check_warns_of_a_contact_larger_than_the_grid(cli, case_text, tmp_path)
     assert "the grid ends at 18 um" in warned
 
 
+def test_check_prints_a_spacing_that_can_be_copied(cli, case_text, tmp_path):
+    text = case_text.replace('["0.5 um", "0.6 um"]', '["0.078125 um", "0.15625 um"]')
+    (tmp_path / "case.toml").write_text(text)
+    assert "nodes of 0.078125 um x 0.15625 um" in cli("check", tmp_path / "case.toml")[1]
+
+
 @pytest.mark.drawn
 def test_surface_writes_heights_statistics_and_a_picture(cli, case_text, tmp_path):
     (tmp_path / "case.toml").write_text(case_text)

@@ -102,7 +102,7 @@ def _table(case: Case, contact: Contact) -> Table:
     nx, ny = contact.grid.nodes
     hx, hy = contact.grid.spacing
     auto = ", before refine" if case.grid.refine == "auto" else ""
-    table.add_row("grid", f"{nx} x {ny}", f"nodes of {1e6 * hx:.4g} um x {1e6 * hy:.4g} um{auto}")
+    table.add_row("grid", f"{nx} x {ny}", f"nodes of {1e6 * hx:.6g} um x {1e6 * hy:.6g} um{auto}")
     provenance = contact.surface.provenance
     kind = provenance.get("kind") or provenance["source"]
     rms = describe(contact.surface)["Sq_m"] or 0.0
