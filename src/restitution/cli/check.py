@@ -55,7 +55,12 @@ def check(
     from restitution.case.case_file import naming
     from restitution.case.derived import deepest_indentation
     from restitution.cli.console import answers, command, errors, say, say_next, warn
-    from restitution.runs.messages import input_warnings, no_range, require_possible
+    from restitution.runs.messages import (
+        failure_at_edge,
+        input_warnings,
+        no_range,
+        require_possible,
+    )
 
     read, cases = _read(case)
     with naming(case), errors.status("making the surface"):
@@ -77,7 +82,10 @@ def check(
         say(f"The study of {cases} cases is valid{ending} The table describes its first case.")
     else:
         say(f"The case is valid{ending}")
-    say_next(command("study" if cases else "run", case, "-o", "OUT"))
+    if failure := failure_at_edge(contact, deepest, read.prescribed):
+        say(failure)
+    else:
+        say_next(command("study" if cases else "run", case, "-o", "OUT"))
 
 
 def _read(path: Path) -> tuple[Case, int]:

@@ -6,13 +6,14 @@ import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from restitution.contact.checks.edge import EdgeReachedError, edges_in_words
+from restitution.contact.checks.edge import EdgeReachedError, edge_values, edges_in_words
 from restitution.contact.checks.finding import Code, Finding
 from restitution.contact.checks.inputs import doubtful, impossible
 from restitution.contact.checks.resolution import (
     ADHESIVE_NODES,
     NODES_PER_PATCH,
     NODES_PER_RADIUS,
+    predicted_radius,
 )
 from restitution.contact.cohesive import needed_spacing
 from restitution.contact.contact import Contact
@@ -32,6 +33,8 @@ _ERRORS: dict[Code, type[RestitutionError]] = {
     "pixel-above-contact": SurfaceError,
     "range-unresolved": CaseError,
 }
+# Ratio of the predicted contact radius to the half width of the grid above which a run will fail.
+_FAR_BEYOND = 2.0
 _NEARLY_JKR = 0.9  # no warning if the energy lost by adhesion is above this fraction of JKR's loss
 _KEYS = {"force": "load", "velocity": "impact"}  # argument of a solver: key of the case file
 # How to avoid a contact that is too large, for each table that prescribes the depths.
@@ -56,6 +59,23 @@ def input_warnings(
     `prescribed` is the table of the case file that prescribes the depths.
     """
     return [message(found, prescribed) for found in doubtful(contact, indentation)]
+
+
+def failure_at_edge(contact: Contact, indentation: float, prescribed: str) -> str | None:
+    """Say that a run to `indentation` (m) will fail, if its contact is far larger than the grid.
+
+    `prescribed` is the table of the case file that prescribes the depths.
+    """
+    if contact.periodic:
+        return None
+    radius = predicted_radius(contact.pair, indentation, contact.hardness)
+    if radius <= _FAR_BEYOND * min(contact.grid.size) / 2:
+        return None
+    advice = _edge_advice(Finding("edge-reached", edge_values(contact, indentation)), prescribed)
+    return (
+        "A run will fail at the deeper depths, because the contact will reach the edge of the "
+        f"grid; {advice}."
+    )
 
 
 def no_range(contact: Contact) -> list[str]:
