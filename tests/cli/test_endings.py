@@ -10,7 +10,8 @@ import time
 import pytest
 import xarray as xr
 
-from restitution.runs import depths, run
+from restitution.errors import DomainError
+from restitution.runs import convergence, depths, ensemble, run
 
 CALL = "from restitution.cli import main; main()"
 
@@ -68,6 +69,45 @@ def test_an_interruption_after_the_last_depth_says_what_is_kept(cli, case, tmp_p
     assert status == 130
     assert f"4 of 4 depths were computed and are kept in {tmp_path / 'out'}" in said
     assert "COR" in table  # before the figures
+
+
+@pytest.mark.parametrize(
+    ("verb", "module", "name"),
+    [
+        (("run",), run, "add_errors"),
+        (("run",), ensemble, "add_errors"),
+        (("converge", "--grids", "2"), convergence, "_add_errors"),
+    ],
+)
+def test_an_interruption_of_the_error_curves_says_what_is_missing(
+    cli, case_text, tmp_path, monkeypatch, verb, module, name
+):
+    text = case_text.replace("steps = 4", "steps = 2")
+    if module is ensemble:
+        text = text.replace("seed = 1", "seed = 1\nrealisations = 2")
+    (tmp_path / "case.toml").write_text(text)
+
+    def stop(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(module, name, stop)
+    status, _, said = cli(*verb, tmp_path / "case.toml", "-o", tmp_path / "out")
+    assert status == 130
+    missing = "total_error is missing at 2 of 2 depths, because the run was stopped before"
+    assert said.count(f"Warning: {missing}") == 1
+    assert "2 of 2 depths were computed" in said
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text())
+    assert [each for each in summary["warnings"] if each.startswith(missing)]
+
+
+def test_a_total_error_that_cannot_be_computed_is_said(cli, case, tmp_path, monkeypatch):
+    def fail(*_, **__):
+        raise DomainError("the edge")
+
+    monkeypatch.setattr(run, "add_errors", fail)
+    status, _, said = cli("run", case, "-o", tmp_path / "out")
+    assert status == 0
+    assert said.count("Warning: total_error is unknown: the edge") == 1
 
 
 def test_an_unloading_curve_that_misses_the_stored_energy_is_warned_of(

@@ -208,6 +208,23 @@ def test_check_warns_of_a_contact_larger_than_the_grid(cli, case_text, tmp_path)
     assert "the grid ends at 18 um" in warned
 
 
+def test_check_says_that_a_run_far_beyond_the_grid_will_fail(cli, case_text, tmp_path):
+    """Twice the half width of the grid is the limit."""
+    for deepest, fails in (("3 um", False), ("6 um", True)):
+        (tmp_path / "case.toml").write_text(case_text.replace('"300 nm"', f'"{deepest}"'))
+        status, said, _ = cli("check", tmp_path / "case.toml")
+        last = said.splitlines()[-1]
+        assert status == 0
+        assert last.startswith("A run will fail at the deeper depths" if fails else "Next: ")
+    assert re.search(r"; use a grid of about 13\d um .* or stop at a smaller indentation\.$", last)
+
+
+def test_check_prints_a_spacing_that_can_be_copied(cli, case_text, tmp_path):
+    text = case_text.replace('["0.5 um", "0.6 um"]', '["0.078125 um", "0.15625 um"]')
+    (tmp_path / "case.toml").write_text(text)
+    assert "nodes of 0.078125 um x 0.15625 um" in cli("check", tmp_path / "case.toml")[1]
+
+
 @pytest.mark.drawn
 def test_surface_writes_heights_statistics_and_a_picture(cli, case_text, tmp_path):
     (tmp_path / "case.toml").write_text(case_text)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from restitution import Body, Contact, Grid, Pair, Surface, generate_surface, smooth
+from restitution.case.case_file import parse_case
 from restitution.contact.checks.resolution import (
     NODES_PER_PATCH,
     NODES_PER_RADIUS,
@@ -15,6 +16,7 @@ from restitution.contact.checks.resolution import (
 )
 from restitution.contact.path import loading_path
 from restitution.errors import CaseError, DomainError, NotConvergedError, SurfaceError
+from restitution.runs.depths import loaded_depths
 from restitution.runs.messages import input_warnings, message, naming_keys, require_possible
 
 STEEL = Pair(*2 * [Body(500e-6, 210e9, 0.25)])
@@ -212,6 +214,31 @@ def test_the_edge_is_reached_on_a_grid_that_can_grow():
     height[0, 3] = 5e-6
     words = refusal(Contact(STEEL, Surface(height, COARSE)), 1e-9)
     assert "first at x = -16 um, y = -13 um, off the centre; use a grid" in words
+
+
+@pytest.mark.parametrize(
+    ("table", "stop"),
+    [
+        ('[indentation]\nvalues = ["0.2 um", "2 um"]\n', "stop at a smaller indentation"),
+        ('[load]\nvalues = ["0.06 N", "1 N"]\n', "stop at a smaller load"),
+        ('[impact]\nvelocity = ["0.1 m/s", "1 m/s"]\n', "stop at a lower impact velocity"),
+    ],
+)
+def test_the_grid_advised_contains_the_deepest_contact_of_the_case(
+    case_text, tmp_path, table, stop
+):
+    begin, end = case_text.index("[grid]"), case_text.index("[unloading]")
+
+    def errors(edge):
+        grid = f'[grid]\nnodes = 48\nspacing = "{edge / 48:.4f} um"\n'
+        case = parse_case(case_text[:begin] + grid + table + case_text[end:])
+        depths = loaded_depths(case, tmp_path, case.contact(tmp_path))
+        return [str(depth.error or "") for depth in depths]
+
+    words = errors(9.6)[0]
+    assert words.endswith(stop)
+    size = float(re.search(r"use a grid of about ([\d.]+) um ", words)[1])
+    assert errors(1.01 * size) == ["", ""]
 
 
 def test_a_tilted_scan_is_to_be_levelled_first():

@@ -114,7 +114,7 @@ def curve_of(
     times a power of `_RATIO`. `near` is ignored for adhesive contacts and if `low` equals `high`.
     Raises the errors of `solve` and `solve_at_velocity`.
     """
-    with naming_keys():
+    with naming_keys("impact"):
         if math.isnan(near) or contact.adhesive or low == high:
             state = solve_at_velocity(contact, low)
         else:

@@ -311,6 +311,11 @@ class Case(Table):
         adhesion = self._adhesion_on(grid) if self.interface.adhesive_energy > 0 else "none"
         return needs.run_bytes(grid, plasticity=plasticity, adhesion=adhesion)
 
+    @property
+    def prescribed(self) -> str:
+        """Name of the table that prescribes the depths."""
+        return next(name for name in DEPTHS if getattr(self, name) is not None)
+
     def depths(self) -> list[float]:
         """The values that prescribe the depths (see `DEPTHS`), in increasing order.
 

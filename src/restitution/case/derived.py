@@ -7,28 +7,28 @@ import math
 from restitution.case.case import Case
 from restitution.contact.checks.resolution import expected_pull_off_error, predicted_radius
 from restitution.contact.contact import Contact
-from restitution.theory import JKR, FirstYield, Hertz, ThorntonNing
+from restitution.theory import JKR, FirstYield, ThorntonNing
 
 
 def deepest_indentation(case: Case) -> float:
     """The deepest indentation (m) of the case; an estimate if the case has no [indentation].
 
-    For loads, the estimate is the indentation of smooth elastic bodies. For impact velocities, it
-    is the indentation of smooth bodies that yield according to Thornton and Ning. The result is NaN
-    for a periodic case that prescribes loads or pressures.
+    For loads and impact velocities, the estimate is the indentation of smooth bodies that yield
+    according to Thornton and Ning. The result is NaN for a periodic case that prescribes loads or
+    pressures.
     """
     last, pair = case.depths()[-1], case.pair()
     if case.indentation is not None:
         return last
     if case.periodic:
         return math.nan
-    if case.load is not None:
-        return float(Hertz(pair.radius, pair.contact_modulus).indentation(last))
-    assert pair.mass is not None  # checked by Case._check_masses
     # The yield pressure p_y of elastic bodies is infinite, but ThorntonNing needs a finite value.
     # Use the contact modulus, a pressure that no contact reaches.
     p_y = min(case.yielding().hardness, pair.contact_modulus)
     smooth = ThorntonNing(pair.radius, pair.contact_modulus, p_y)
+    if case.load is not None:
+        return float(smooth.indentation(last))
+    assert pair.mass is not None  # checked by Case._check_masses
     return float(smooth.indentation_from_velocity(last, pair.mass))
 
 

@@ -55,7 +55,12 @@ def check(
     from restitution.case.case_file import naming
     from restitution.case.derived import deepest_indentation
     from restitution.cli.console import answers, command, errors, say, say_next, warn
-    from restitution.runs.messages import input_warnings, no_range, require_possible
+    from restitution.runs.messages import (
+        failure_at_edge,
+        input_warnings,
+        no_range,
+        require_possible,
+    )
 
     read, cases = _read(case)
     with naming(case), errors.status("making the surface"):
@@ -67,7 +72,7 @@ def check(
     deepest = deepest_indentation(read)
     require_possible(contact, deepest)
     with errors.status("checking the surface"):
-        warnings = input_warnings(contact, deepest)
+        warnings = input_warnings(contact, deepest, read.prescribed)
         if read.interface.adhesion is None and contact.adhesive:
             warnings += no_range(contact)
     for warning in warnings:
@@ -77,7 +82,10 @@ def check(
         say(f"The study of {cases} cases is valid{ending} The table describes its first case.")
     else:
         say(f"The case is valid{ending}")
-    say_next(command("study" if cases else "run", case, "-o", "OUT"))
+    if failure := failure_at_edge(contact, deepest, read.prescribed):
+        say(failure)
+    else:
+        say_next(command("study" if cases else "run", case, "-o", "OUT"))
 
 
 def _read(path: Path) -> tuple[Case, int]:
@@ -102,7 +110,7 @@ def _table(case: Case, contact: Contact) -> Table:
     nx, ny = contact.grid.nodes
     hx, hy = contact.grid.spacing
     auto = ", before refine" if case.grid.refine == "auto" else ""
-    table.add_row("grid", f"{nx} x {ny}", f"nodes of {1e6 * hx:.4g} um x {1e6 * hy:.4g} um{auto}")
+    table.add_row("grid", f"{nx} x {ny}", f"nodes of {1e6 * hx:.6g} um x {1e6 * hy:.6g} um{auto}")
     provenance = contact.surface.provenance
     kind = provenance.get("kind") or provenance["source"]
     rms = describe(contact.surface)["Sq_m"] or 0.0

@@ -54,7 +54,7 @@ class LiveCurves:
         contact = self._contact(case, folder)
         deepest = deepest_indentation(case)
         require_possible(contact, deepest)
-        warnings = omissions(case) + input_warnings(contact, deepest)
+        warnings = omissions(case) + input_warnings(contact, deepest, case.prescribed)
         case = with_chosen_adhesion(case, contact, warnings.append)
         curve = _Curve(case, contact, warnings)
         self._curves.pop(tab, None)

@@ -39,6 +39,7 @@ from restitution.runs.error_budget import (
     MISSING_BAND,
     Band,
     Row,
+    interrupted_errors,
     spread_errors,
     total_error_summary,
     unseen_yield,
@@ -222,6 +223,7 @@ def _write_results(
             f"{len(finest) - len(known)} of {len(finest)} depths have no discretisation_error: "
             "coarser grids have no contact there; begin deeper, or with a finer grid (grid.refine)"
         )
+    summary["warnings"] += interrupted_errors(case, finest, log.status)
     dataset = one.dataset.assign(curve_variables(out.rows))
     coarser = sorted(runs)[:-1]
     values = [

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from restitution.case.case import Case
+from restitution.case.derived import deepest_indentation
 from restitution.collision import Collision, collide
+from restitution.contact.checks.edge import needed_edges
 from restitution.contact.contact import Contact
 from restitution.contact.loading import solve
 from restitution.contact.path import unloading_path
@@ -56,7 +58,7 @@ def load_to(case: Case, contact: Contact, depth: float, start: State | None = No
     used if a pressure is prescribed. Raises the errors of `solve`, `solve_at_force`,
     `solve_at_velocity` or `solve_at_pressure`.
     """
-    with naming_keys():
+    with naming_keys(case.prescribed, lambda: needed_edges(contact, deepest_indentation(case))):
         if case.pressure is not None:
             return solve_at_pressure(contact, depth)
         if case.load is not None:

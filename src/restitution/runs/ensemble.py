@@ -28,6 +28,7 @@ from restitution.runs.error_budget import (
     Row,
     add_errors,
     half_interval,
+    interrupted_errors,
     total_error_summary,
 )
 from restitution.runs.log import RunLog, Say, ignore
@@ -152,7 +153,7 @@ class _Ensemble:
                 scattered=False,
             )
         except RestitutionError as error:
-            self.log.warnings.append(f"total_error is unknown: {error}")
+            self.log.warn(f"total_error is unknown: {error}")
         self.errors = alone
 
     def keep(self) -> dict[str, Any]:
@@ -211,6 +212,7 @@ class _Ensemble:
         depths = [row["max_indentation_m"] for row in whole]
         patches = [row["median_patch_nodes"] for row in whole]
         yield from map(message, unresolved_patches(depths, patches))
+        yield from interrupted_errors(self.case, self.out.rows, self.log.status)
         fewest = min((row["realisations"] for row in self.out.rows), default=math.inf)
         if fewest < self.case.realisations:
             yield (

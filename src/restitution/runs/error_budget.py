@@ -42,6 +42,7 @@ import numpy as np
 
 from restitution.case.case import Case
 from restitution.contact.checks.resolution import resolves
+from restitution.display import counted
 from restitution.results.total_error import total
 from restitution.runs.companions import SURFACES, Array, Companions
 from restitution.runs.log import Say, ignore
@@ -287,6 +288,19 @@ def total_error_summary(case: Case, rows: Sequence[Row]) -> dict[str, object]:
         "total_error_includes": ", ".join(included(case)) if known else "",
         "total_error_does_not_include": NOT_INCLUDED,
     }
+
+
+def interrupted_errors(case: Case, rows: Sequence[Row], status: str) -> Iterator[str]:
+    """Yield a warning if rows lack their total error because the run was interrupted.
+
+    `status` says how the run ended (`RunLog.status`).
+    """
+    missing = sum(math.isnan(row["total_error"]) for row in rows)
+    if case.total_error and status == "interrupted" and missing:
+        yield (
+            f"total_error is missing at {missing} of {counted(len(rows), 'depth')}, because the "
+            "run was stopped before it was computed; run the case again"
+        )
 
 
 def included(case: Case) -> list[str]:

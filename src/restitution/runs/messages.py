@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from restitution.contact.checks.edge import EdgeReachedError, edges_in_words
+from restitution.contact.checks.edge import EdgeReachedError, edge_values, edges_in_words
 from restitution.contact.checks.finding import Code, Finding
 from restitution.contact.checks.inputs import doubtful, impossible
 from restitution.contact.checks.resolution import (
     ADHESIVE_NODES,
     NODES_PER_PATCH,
     NODES_PER_RADIUS,
+    predicted_radius,
 )
 from restitution.contact.cohesive import needed_spacing
 from restitution.contact.contact import Contact
@@ -34,7 +35,15 @@ _ERRORS: dict[Code, type[RestitutionError]] = {
 }
 # `no_range` warns only if the energy lost by adhesion is at most this fraction of JKR's loss.
 _NEARLY_JKR = 0.9
+# Ratio of the predicted contact radius to the half width of the grid above which a run will fail.
+_FAR_BEYOND = 2.0
 _KEYS = {"force": "load", "velocity": "impact"}  # argument of a solver: key of the case file
+# How to avoid a contact that is too large, for each table that prescribes the depths.
+_STOPS = {
+    "indentation": "stop at a smaller indentation",
+    "load": "stop at a smaller load",
+    "impact": "stop at a lower impact velocity",
+}
 
 
 def require_possible(contact: Contact, indentation: float) -> None:
@@ -43,9 +52,31 @@ def require_possible(contact: Contact, indentation: float) -> None:
         raise _ERRORS[found.code](message(found))
 
 
-def input_warnings(contact: Contact, indentation: float) -> list[str]:
-    """Return a warning for each doubtful property of `contact` loaded to `indentation` (m)."""
-    return [message(found) for found in doubtful(contact, indentation)]
+def input_warnings(
+    contact: Contact, indentation: float, prescribed: str = "indentation"
+) -> list[str]:
+    """Return a warning for each doubtful property of `contact` loaded to `indentation` (m).
+
+    `prescribed` is the table of the case file that prescribes the depths.
+    """
+    return [message(found, prescribed) for found in doubtful(contact, indentation)]
+
+
+def failure_at_edge(contact: Contact, indentation: float, prescribed: str) -> str | None:
+    """Say that a run to `indentation` (m) will fail, if its contact is far larger than the grid.
+
+    `prescribed` is the table of the case file that prescribes the depths.
+    """
+    if contact.periodic:
+        return None
+    radius = predicted_radius(contact.pair, indentation, contact.hardness)
+    if radius <= _FAR_BEYOND * min(contact.grid.size) / 2:
+        return None
+    advice = _edge_advice(Finding("edge-reached", edge_values(contact, indentation)), prescribed)
+    return (
+        "A run will fail at the deeper depths, because the contact will reach the edge of the "
+        f"grid; {advice}."
+    )
 
 
 def no_range(contact: Contact) -> list[str]:
@@ -72,12 +103,23 @@ def no_range(contact: Contact) -> list[str]:
 
 
 @contextmanager
-def naming_keys() -> Iterator[None]:
-    """Replace the names of arguments in errors of the solvers by keys of the case file."""
+def naming_keys(
+    prescribed: str = "indentation", needed: Callable[[], tuple[float, float]] | None = None
+) -> Iterator[None]:
+    """Replace the names of arguments in errors of the solvers by keys of the case file.
+
+    `prescribed` is the table of the case file that prescribes the depths. `needed` returns the edge
+    lengths (m) of a grid that contains the deepest contact of the case. If the contact reaches the
+    edge of the grid, the error recommends a grid that is at least as large.
+    """
     try:
         yield
     except EdgeReachedError as error:
-        raise DomainError(message(error.finding)) from error
+        found = error.finding
+        if needed is not None:
+            edges = tuple(map(max, found["needed"], needed()))
+            found = Finding(found.code, {**found.values, "needed": edges})
+        raise DomainError(message(found, prescribed)) from error
     except (DomainError, NotConvergedError) as error:
         argument, _, text = str(error).partition(":")
         if argument not in _KEYS:
@@ -85,8 +127,11 @@ def naming_keys() -> Iterator[None]:
         raise type(error)(f"{_KEYS[argument]}:{text}") from error
 
 
-def message(found: Finding) -> str:
-    """Describe the finding `found` in one line that also says what to do."""
+def message(found: Finding, prescribed: str = "indentation") -> str:
+    """Describe the finding `found` in one line that also says what to do.
+
+    `prescribed` is the table of the case file that prescribes the depths.
+    """
     match found.code:
         case "roughness-above-radius":
             return (
@@ -124,13 +169,13 @@ def message(found: Finding) -> str:
             wide, long = (1e6 * edge for edge in found["size"])
             return (
                 f"the contact reaches the edge of the {wide:.4g} um x {long:.4g} um grid at an "
-                f"indentation of {_nm(found['indentation'])}; {_edge_advice(found)}"
+                f"indentation of {_nm(found['indentation'])}; {_edge_advice(found, prescribed)}"
             )
         case "edge-predicted":
             return (
                 f"the contact is predicted to reach the edge of the grid: the gap there is "
                 f"{_nm(found['gap'])} at first touch, and the deepest indentation is "
-                f"{_nm(found['indentation'])}; {_edge_advice(found)}"
+                f"{_nm(found['indentation'])}; {_edge_advice(found, prescribed)}"
             )
         case "contact-beyond-grid":
             larger = "a larger scan, roughness.extend" if found["whole_scan"] else "more nodes"
@@ -210,7 +255,7 @@ def message(found: Finding) -> str:
             )
 
 
-def _edge_advice(found: Finding) -> str:
+def _edge_advice(found: Finding, prescribed: str) -> str:
     """Advice on how to keep the contact inside the grid, for the end of a message."""
     x, y = found["first_touch"]
     where = (
@@ -221,8 +266,8 @@ def _edge_advice(found: Finding) -> str:
     size, scan = edges_in_words(found), found["scan"]
     if scan is None:
         return (
-            f"{where}use a grid of about {size} (more grid.nodes or a larger grid.spacing) or stop "
-            "at a smaller indentation"
+            f"{where}use a grid of about {size} (more grid.nodes or a larger grid.spacing) or "
+            f"{_STOPS[prescribed]}"
         )
     detrend = {
         "tilt": 'roughness.detrend = "curvature", ',
@@ -232,7 +277,7 @@ def _edge_advice(found: Finding) -> str:
         larger = f"a grid of about {size} (the scan has {1e6 * scan[0]:.3g} x {1e6 * scan[1]:.3g})"
     else:
         larger = "a larger scan, roughness.extend"
-    return f"{where}use {detrend}{larger}, a smaller radius, or stop at a smaller indentation"
+    return f"{where}use {detrend}{larger}, a smaller radius, or {_STOPS[prescribed]}"
 
 
 def _um(length: float) -> str:

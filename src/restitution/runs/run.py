@@ -35,7 +35,12 @@ from restitution.results.writer import (
     versions,
 )
 from restitution.runs.depths import Depth, collision_at, loaded_depths
-from restitution.runs.error_budget import add_errors, band_warning, total_error_summary
+from restitution.runs.error_budget import (
+    add_errors,
+    band_warning,
+    interrupted_errors,
+    total_error_summary,
+)
 from restitution.runs.log import RunLog, Say, ignore
 from restitution.runs.messages import input_warnings, message, require_possible
 from restitution.runs.oblique import is_oblique, oblique_rows
@@ -64,6 +69,7 @@ _BALANCE = 0.01  # relative difference of unloading work and stored energy
 class _Run(RunLog):
     """The log of a run, with the values for its diagnostics."""
 
+    errors: bool = True  # whether the run computes the total error
     deepest: State | None = None
     loading_work_errors: list[float] = field(default_factory=list)
     asked: list[float] = field(default_factory=list)
@@ -101,7 +107,7 @@ def run_case(
     and about the results at the end, even after an error.
     """
     case.require_impact()
-    run = _Run(progress, warn)
+    run = _Run(progress, warn, errors=errors)
 
     with run.record(
         out, lambda: _write_results(case, text, out, run, run.deepest) if run.deepest else {}
@@ -111,7 +117,7 @@ def run_case(
         case = with_chosen_adhesion(case, contact, run.warn)
         deepest = deepest_indentation(case)
         require_possible(contact, deepest)
-        for warning in omissions(case) + input_warnings(contact, deepest):
+        for warning in omissions(case) + input_warnings(contact, deepest, case.prescribed):
             run.warn(warning)
         with out.tables():
             failure = _load_and_unload(
@@ -121,7 +127,7 @@ def run_case(
             try:
                 run.band_errors = add_errors(case, folder, contact.surface, out.rows, run.progress)
             except RestitutionError as error:
-                run.warnings.append(f"total_error is unknown: {error}")
+                run.warn(f"total_error is unknown: {error}")
             out.put_curve(out.rows)
         if is_oblique(case) and out.rows:
             oblique, missing = oblique_rows(case, contact.surface, out)
@@ -278,6 +284,8 @@ def _result_warnings(case: Case, contact: Contact, out: ResultsFolder, run: _Run
     unresolved = unresolved_patches(depths, patches) + unresolved_adhesion(depths, nodes)
     yield from map(message, unresolved)
     yield from band_warning(contact.surface, run.band_errors)
+    if run.errors:
+        yield from interrupted_errors(case, out.rows, run.status)
     yield from _imprecise(out, case)
     yield from _velocities_missed(out, case, run.asked)
     if not contact.adhesive:
