@@ -99,7 +99,7 @@ class _Curve:
     def __init__(self, case: Case, contact: Contact, warnings: list[str]) -> None:
         self.case, self.contact, self.warnings = case, contact, warnings
         self.rows: list[dict[str, float]] = []
-        self.maps = ContactMaps()
+        self.maps = ContactMaps(contact)
         self.failure: RestitutionError | None = None
 
     def compute(self, folder: Path, check: Callable[[], None]) -> Iterator[str]:

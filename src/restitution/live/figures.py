@@ -101,7 +101,8 @@ def _thinned(surface: Surface) -> Surface:
 class ContactMaps:
     """Coarse maps of pressure and plastic displacement at every depth of a curve."""
 
-    def __init__(self) -> None:
+    def __init__(self, contact: Contact) -> None:
+        self._down = contact.surface.provenance.get("y_axis") == "down"
         self._maps: list[tuple[float, Map, Map]] = []
 
     def add(self, state: State, indentation: float) -> None:
@@ -140,5 +141,5 @@ class ContactMaps:
             for each in zip(*((one.x, one.y) for _, one, _ in self._maps), strict=True)
         )
         plot.update_xaxes(range=x)
-        plot.update_yaxes(range=y)
+        plot.update_yaxes(range=y[::-1] if self._down else y)
         return Raw(plot.to_json())

@@ -130,7 +130,7 @@ class Chart:
 class Map:
     """Values, shape (nx, ny), at the nodes `x` and `y` (µm), drawn as colours; NaN is left blank.
 
-    Every map is drawn with x to the right and y upwards.
+    With `downwards`, y increases towards the bottom of the map.
     """
 
     x: Array
@@ -139,6 +139,7 @@ class Map:
     quantity: Axis
     colours: Colours = "viridis"
     title: str = ""
+    downwards: bool = False
 
 
 @dataclass(frozen=True)

@@ -193,6 +193,8 @@ def _heatmap(part: Map) -> dict[str, Any]:
 def _map_axes(part: Map) -> dict[str, Any]:
     x = _axis(Axis("x", "µm")) | {"constrain": "domain"}
     y = _axis(Axis("y", "µm")) | {"scaleanchor": "x", "constrain": "domain"}
+    if part.downwards:
+        y["autorange"] = "reversed"
     return {"xaxis": x, "yaxis": y}
 
 

@@ -51,5 +51,6 @@ def area_against_pressure(results: xr.Dataset) -> Figure:
 def _pressure_map(results: xr.Dataset) -> Figure:
     values = 1e-6 * np.where(results["pressure"].values > 0, results["pressure"].values, np.nan)
     x, y = (1e6 * results[name].values for name in ("x", "y"))
+    down = results.attrs.get("surface_y_axis") == "down"
     axis = Axis("contact pressure", "MPa")
-    return Figure(results.attrs.get("title", ""), [Map(x, y, values, axis)])
+    return Figure(results.attrs.get("title", ""), [Map(x, y, values, axis, downwards=down)])

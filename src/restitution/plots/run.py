@@ -139,9 +139,10 @@ def pressure_map(results: xr.Dataset) -> Figure:
     nodes = np.argwhere(touched)
     low, high = np.maximum(nodes.min(axis=0) - _RIM, 0), nodes.max(axis=0) + _RIM + 1
     x, y = (slice(*ends) for ends in zip(low, high, strict=True))
+    down = results.attrs.get("surface_y_axis") == "down"
     X, Y = 1e6 * results["x"].values[x], 1e6 * results["y"].values[y]
     panels = [
-        Map(X, Y, values[x, y], axis, colours, title) for axis, values, colours, title in maps
+        Map(X, Y, values[x, y], axis, colours, title, down) for axis, values, colours, title in maps
     ]
     return Figure(results.attrs.get("title", ""), panels)
 

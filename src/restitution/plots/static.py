@@ -250,6 +250,8 @@ def _draw_map(drawing: Drawing, axes: Axes, part: Map) -> None:
         part.values.T, origin="lower", extent=extent, cmap=part.colours, interpolation="nearest"
     )
     axes.set(xlabel="x (µm)", ylabel="y (µm)")
+    if part.downwards:
+        axes.invert_yaxis()
     beside = axes.inset_axes((1.03, 0.0, 0.05, 1.0))  # a colour bar as high as the map
     drawing.colorbar(image, cax=beside, label=_escaped(part.quantity.title))
 

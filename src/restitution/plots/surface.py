@@ -28,8 +28,9 @@ _ROUNDING = 1e-15  # spectral densities below this fraction of the largest one a
 def surface_map(surface: Surface, title: str = "") -> Figure:
     """Draw a map of the heights (nm) above their mean."""
     height = 1e9 * (surface.height - surface.height.mean())
+    down = surface.provenance.get("y_axis") == "down"
     x, y = 1e6 * surface.grid.x, 1e6 * surface.grid.y
-    return Figure(title, [Map(x, y, height, Axis("height", "nm"), "cividis")])
+    return Figure(title, [Map(x, y, height, Axis("height", "nm"), "cividis", downwards=down)])
 
 
 def height_distribution(density: HeightDensity, curve: MaterialRatio) -> Figure:

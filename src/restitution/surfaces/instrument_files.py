@@ -1,8 +1,9 @@
 """Read the file formats of instruments with the SurfaceTopography package.
 
-SurfaceTopography and this package both index heights `[i, j]` along x and y, with the first scan
-line at j = 0. The physical size of a scan is the number of pixels times the pixel size.
-SurfaceTopography is optional and imported on first use.
+SurfaceTopography and this package both index heights `[i, j]` along x and y. SurfaceTopography's y
+axis points down the picture, so `imshow(heights.T)` shows the scan as the instrument does. The
+physical size of a scan is the number of pixels times the pixel size. SurfaceTopography is optional
+and imported on first use.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from restitution.errors import SurfaceError
-from restitution.surfaces.scan import Scan, in_metres
+from restitution.surfaces.scan import Y_DOWN, Scan, in_metres
 
 # Oldest version of SurfaceTopography that is accepted. Earlier versions misread some files without
 # an error. For example, version 1.25.0 reads all lengths in .tmd files a thousand times too small,
@@ -135,6 +136,7 @@ def _read_channel(path: Path, reader: Any, channel: int | None) -> Scan:
         (x, y) if sized else (None, None),
         {
             "format": f"SurfaceTopography {type(reader).__name__}",
+            **Y_DOWN,
             "channel": index,
             "channel_name": str(chosen.name),
             "file_unit": str(chosen.unit),

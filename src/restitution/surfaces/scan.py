@@ -27,6 +27,9 @@ _PER_METRE = {
 # Largest number of pixels of a scan, which limits the memory needed for reading.
 MOST_PIXELS = 2**26
 
+# Provenance entry for files whose first scan line is at the top of the picture.
+Y_DOWN = {"y_axis": "down"}
+
 
 @dataclass(frozen=True)
 class Scan:
@@ -34,7 +37,8 @@ class Scan:
 
     `height` is in m, has shape (nx, ny) and is NaN where undefined. `size` contains the lengths of
     the x and y edges (m); a length that the file does not contain is None. `details` become part of
-    the provenance.
+    the provenance; they include `Y_DOWN` if the first line of the file is at the top of the
+    picture.
     """
 
     height: Array

@@ -15,7 +15,7 @@ import numpy as np
 
 from restitution.errors import SurfaceError, shown
 from restitution.surfaces.numpy_files import SAVE_AS_NUMPY
-from restitution.surfaces.scan import Scan, in_metres
+from restitution.surfaces.scan import Y_DOWN, Scan, in_metres
 
 TEXT_SUFFIXES = frozenset({".txt", ".csv", ".dat", ".asc"})
 
@@ -72,7 +72,7 @@ def read_text(path: Path) -> Scan:
     size, metres_per_value, details, counts = _read_header(path, comments)
     _check_counts(path, counts, (width, len(rows)))
     height = np.ascontiguousarray(np.array(rows, dtype=np.float64).T) * metres_per_value
-    return Scan(height, size, {"format": "text matrix", **details})
+    return Scan(height, size, {"format": "text matrix", **Y_DOWN, **details})
 
 
 def _decode(path: Path) -> str:
