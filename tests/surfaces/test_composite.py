@@ -3,6 +3,7 @@ import pytest
 
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
+from restitution.plots.surface import surface_map
 from restitution.surfaces import Surface, composite, describe, generate_surface
 from tolerance import approx
 
@@ -55,3 +56,12 @@ def test_what_the_grid_does_not_carry_of_the_parts():
     assert told["removed_rms_m"] == approx(5e-9, abs=0)
     assert told["shortest_carried_m"] == 2e-6
     assert "removed_slope" not in composite([Surface(height, GRID)] * 2).provenance
+
+
+def test_maps_of_a_sum_with_a_scan_are_drawn_as_those_of_the_scan():
+    scan = Surface(np.zeros(GRID.nodes), GRID, {"y_axis": "down"})
+    for parts in ([scan, scan], [rough(1), scan]):
+        both = composite(parts)
+        assert both.provenance["y_axis"] == "down"
+        assert surface_map(both).panels[0].downwards
+    assert "y_axis" not in composite([rough(1), rough(2)]).provenance

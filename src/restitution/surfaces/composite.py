@@ -13,6 +13,7 @@ from restitution.surfaces.surface import Surface, is_periodic
 # the waves that were removed from the parts are added in quadrature.
 _COMBINED: dict[str, Callable[[list[Any]], str | float]] = {
     "file": lambda files: ", ".join(map(str, files)),
+    "y_axis": lambda axes: axes[0],  # direction in which y is drawn (`scan.Y_DOWN`)
     "pixel_x_m": max,
     "pixel_y_m": max,
     "shortest_carried_m": max,
@@ -31,8 +32,8 @@ def composite(surfaces: Sequence[Surface]) -> Surface:
     them first.
 
     The provenance of the sum contains the provenance of each part, with the prefixes `part_1_`,
-    `part_2_`, … It also states the files, the largest pixel size and whether all parts are
-    periodic. For resampled parts, it also states the rms height and slope of the removed waves.
+    `part_2_`, … It also states the files, the largest pixel size, whether all parts are
+    periodic, and whether maps are drawn with y downwards, as for a single scan. For resampled parts, it also states the rms height and slope of the removed waves.
 
     Args:
         surfaces: Surfaces on the same grid.
