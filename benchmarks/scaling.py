@@ -44,8 +44,8 @@ surface with an edge length of 64 µm (Rq = 0.1 µm, Gaussian autocorrelation of
 surface is made on {coarsest}² nodes and refined by zero padding its spectrum. Each row was measured
 in a process of its own.
 
-* case: "a = 20 µm" has an indentation of 20²/250 µm. "filling" has the indentation δ at which the
-  region with an initial gap h₀ < δ nearly reaches the edge of the grid ({filling:.2f} µm). Plastic
+* case: "a = 20 µm" has an indentation of 20²/250 µm. "filling" has an indentation δ of
+  {filling:.2f} µm, so that the nodes with an initial gap h₀ < δ nearly fill the grid. Plastic
   contacts have p ≤ 750 MPa.
 * time: the median time of {fewest} to {most} solutions, including the set-up and the computation of
   the kernel.
@@ -61,7 +61,8 @@ in a process of its own.
 {table}
 
 Time grows with the number of nodes to the power {exponents}. If the shortest times are used instead
-of the medians, the powers are {least}. For the times of the first solutions they are {first}.
+of the medians, the powers are {least}. For the first solution in each process (column "first"),
+the powers are {first}.
 
 ![time and memory against nodes](scaling.png)
 """
