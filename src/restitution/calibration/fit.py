@@ -23,6 +23,7 @@ from restitution.calibration.model import Array, CaseModel
 from restitution.calibration.parameters import Parameter, free_parameters
 from restitution.calibration.uncertainty import Deviations, Uncertainty
 from restitution.case.case_file import parse_case, parse_toml
+from restitution.display import counted
 from restitution.errors import CaseError, RestitutionError
 from restitution.runs.log import Say, ignore
 from restitution.runs.refinement import settled
@@ -136,13 +137,14 @@ def _check_points(measured: Measured, parameters: int) -> None:
     points = measured.velocity.size
     if points < parameters:
         raise CaseError(
-            f"--free: {parameters} keys are more than the {points} measured points can determine; "
-            "measure more, or free fewer keys"
+            f"--free: {counted(parameters, 'key')} are more than "
+            f"{counted(points, 'measured point')} can determine; measure more, or free fewer keys"
         )
     if points == parameters and measured.deviation is None:
         raise CaseError(
-            f"--free: with {parameters} keys and as many measured points there are no residuals "
-            "from which to estimate the noise; add the column restitution_std, or measure more"
+            f"--free: with {counted(parameters, 'key')} and {counted(points, 'measured point')} "
+            "there are no residuals from which to estimate the noise; add the column "
+            "restitution_std, or measure more"
         )
 
 
