@@ -35,7 +35,7 @@ NOT_RUN = {
     ("docs/developers/recipes.md", "python tests/document_blocks.py docs/developers/recipes.md"): (
         "changes this page"
     ),
-    ("docs/mutation.md", "make mutation"): "takes half an hour",
+    ("docs/mutation.md", "make mutation"): "takes ten minutes and more",
     ("docs/dem.md", "python match_velocity.py --wall 2 z 0.0 -- lmp -in my.in"): (
         "needs a simulation of its own"
     ),

@@ -109,7 +109,10 @@ def test_data_that_the_case_does_not_explain_are_said(recovered):
 def test_contacts_that_are_not_resolved_are_said(recovered):
     few = np.arange(recovered.resolved.size) >= 2
     said = findings(replace(recovered, resolved=few))
-    assert any("does not resolve the contact at 2 of 6" in sentence for sentence in said)
+    assert any(
+        "does not resolve the contact at 2 of 6 measured points, and" in sentence
+        for sentence in said
+    )
 
 
 def test_an_unknown_error_of_the_grid_is_said(recovered):
@@ -129,6 +132,8 @@ def test_fewer_points_than_parameters_are_refused(rough_case):
     one = Measured(np.array([0.1]), np.array([0.7]), np.array([0.01]))
     with pytest.raises(CaseError, match="1 measured point cannot determine 2 keys"):
         fit(rough_case("1 GPa", "0.05 um"), Path(), one, ["rms", "yield_pressure"])
+    with pytest.raises(CaseError, match=r"as many keys as measured points \(1\)"):
+        fit(rough_case("1 GPa", "0.05 um"), Path(), replace(one, deviation=None), ["rms"])
     bare = Measured(np.array([0.05, 0.1]), np.array([0.8, 0.7]), None)
     with pytest.raises(CaseError, match="add the column restitution_std"):
         fit(rough_case("1 GPa", "0.05 um"), Path(), bare, ["rms", "yield_pressure"])

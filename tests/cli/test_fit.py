@@ -43,6 +43,13 @@ def call(cli, folder, free="yield_pressure", **changes):
     return cli("fit", table, "--case", given["case"], "--free", free, "-o", given["out"])
 
 
+def test_one_point_is_said_in_the_singular(cli, files):
+    (files / "m.csv").write_text("velocity_m_per_s,restitution,restitution_std\n0.05,0.7,0.01\n")
+    status, said, _ = call(cli, files)
+    assert status == 0
+    assert "\n1 point, rms residual of COR" in said
+
+
 def test_files_belong_together_and_the_fitted_case_runs(cli, files):
     status, said, _ = call(cli, files)
     out = files / "out"

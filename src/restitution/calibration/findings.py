@@ -9,6 +9,7 @@ import numpy as np
 
 from restitution.calibration.fit import Fit
 from restitution.calibration.least_squares import DISTANCE, RANGE
+from restitution.display import counted
 
 WIDEST = 4.0
 """A parameter is not identifiable if its 95 % interval spans more than this factor."""
@@ -162,8 +163,9 @@ def _unresolved(found: Fit) -> Iterator[str]:
     few = int((~found.resolved).sum())
     if few:
         yield (
-            f"the grid does not resolve the contact at {few} of {found.resolved.size} measured "
-            "velocities, so these points get less weight; use grid.refine or a smaller grid.spacing"
+            f"the grid does not resolve the contact at {few} of "
+            f"{counted(found.resolved.size, 'measured point')}, and unresolved points get less "
+            "weight; use grid.refine or a smaller grid.spacing"
         )
 
 

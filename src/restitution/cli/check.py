@@ -54,7 +54,7 @@ def check(
     """Validate CASE and print derived quantities, such as the yield velocity; solve nothing."""
     from restitution.case.case_file import naming
     from restitution.case.derived import deepest_indentation
-    from restitution.cli.console import answers, command, errors, say, say_next, warn
+    from restitution.cli.console import command, errors, print_numbers, say, say_next, warn
     from restitution.runs.messages import (
         failure_at_edge,
         input_warnings,
@@ -66,7 +66,7 @@ def check(
     with naming(case), errors.status("making the surface"):
         contact = read.contact(case.parent)
         table = _table(read, contact)
-    answers.print(table)
+    print_numbers(table)
     if (from_where := read.yielding().source) not in ("given", "elastic"):
         say(f"The yield pressure of the contact comes from {from_where}.")
     deepest = deepest_indentation(read)

@@ -58,6 +58,7 @@ def fit(
         warn,
     )
     from restitution.cli.progress import spinner
+    from restitution.display import counted
     from restitution.plots.fit import fit_figure
     from restitution.plots.static import write_figure
     from restitution.results.writer import make_folder
@@ -83,8 +84,8 @@ def fit(
     answers.print(_table(found))
     rms = float((found.residuals**2).mean() ** 0.5)
     say(
-        f"{found.measured.velocity.size} points, rms residual of COR {rms:.2g}, "
-        f"{found.model.evaluations} curves computed"
+        f"{counted(found.measured.velocity.size, 'point')}, rms residual of COR {rms:.2g}, "
+        f"{counted(found.model.evaluations, 'curve')} computed"
     )
     for sentence in findings(found):
         warn(sentence)
