@@ -101,8 +101,10 @@ def cli(request, monkeypatch, capsys):
     Figures are built, but drawn only for tests with the mark `drawn`, because this takes longer
     than a small run.
     """
-    from restitution.cli import main
+    from restitution.cli import console, main
 
+    for each in (console.answers, console.errors):  # their width is set when they are imported
+        monkeypatch.setattr(each, "_width", 200)
     if request.node.get_closest_marker("drawn") is None:
         monkeypatch.setattr("matplotlib.figure.Figure.savefig", _without_pixels)
 
