@@ -166,7 +166,7 @@ def collide_obliquely(
         angle: Angle of impact from the normal, such as "30 deg", or a number (rad). It must be at
             least 0 and less than 90 degrees.
         friction: Coefficient of friction (dimensionless). By default, the coefficient in the case
-            of the run is used.
+            file of the run is used.
         spin: Spin before the impact: one value for the first body, or a pair of values for both
             bodies. A value is a text such as "100 rad/s" or "20 rpm", or a number (rad/s). A spin
             is positive in the direction in which friction turns a body without spin.

@@ -72,12 +72,17 @@ def test_an_error_above_the_asked_one_takes_finer_steps(monkeypatch):
 
 
 def test_steps_stop_where_the_grid_has_the_larger_error(monkeypatch):
-    """Finer steps do not reduce the error of the grid, 0.015 w times the area."""
+    """Finer steps do not reduce the error of the grid, a fraction of w times the area."""
     state = loaded("crack-closure")
-    monkeypatch.setattr(separation, "_SMALL", {"crack-closure": 1.0})
-    steps = len(list(separation.separate(state, tolerance=1e-6)))
-    monkeypatch.setattr(separation, "_SMALL", {"crack-closure": 0.0})
-    assert len(list(separation.separate(state, tolerance=1e-6))) > 1.5 * steps
+    monkeypatch.setattr(separation, "_REFINEMENTS", (1,))
+    once = list(separation.separate(state, tolerance=1e-6))
+    monkeypatch.setattr(separation, "_REFINEMENTS", (1, 2, 4))
+    error = separation.separation_of(once).error
+    fraction = error / (state.contact.work_of_adhesion * state.contact_area)
+    monkeypatch.setattr(separation, "_SMALL", {"crack-closure": 1.01 * fraction})
+    assert len(list(separation.separate(state, tolerance=1e-6))) == len(once)
+    monkeypatch.setattr(separation, "_SMALL", {"crack-closure": 0.99 * fraction})
+    assert len(list(separation.separate(state, tolerance=1e-6))) > len(once)
 
 
 def test_the_error_holds_what_the_grid_takes_in_letting_go(pressed):

@@ -57,6 +57,8 @@ def test_hertz_and_check_use_the_same_yield_velocity(tmp_path):
     (hertz,) = (each for each in room.theories(case, V) if each.name == "hertz")
     assert hertz.restitution[0] == 1
     assert np.isnan(hertz.restitution[1])
+    p_y = hertz.parameters["yield_pressure_Pa"]
+    assert FirstYield(*bodies(case)[:2], p_y).velocity(bodies(case)[2]) == approx(V_y, rel=1e-12)
 
 
 def test_hertz_ends_where_the_contact_is_no_longer_small():

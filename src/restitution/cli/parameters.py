@@ -1,6 +1,6 @@
-"""Arguments and options that several verbs share.
+"""Arguments and options that several commands share.
 
-In the help, OUT is always the folder that a verb writes, and FILE is a single file that it writes.
+In the help, OUT is always the folder that a command writes, and FILE a single file that it writes.
 The placeholders of most inputs state the content of the input, such as CASE or RESULTS.
 """
 

@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 
-# If Python dropped the exception of a signal in a callback, the signal is sent again after this
-# time (s). By then the callback has returned.
+# A signal raises an exception. If the signal arrives during a callback, Python may drop this
+# exception. The signal is then sent again after this time (s), when the callback has returned.
 _REPEAT_AFTER = 0.05
 
 

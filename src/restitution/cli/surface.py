@@ -65,7 +65,7 @@ def surface(
 
 
 def _curvature(file: str, radius: float) -> str:
-    """Say which curvature was subtracted from a scan, for comparison with the particle."""
+    """Describe the curvature that was subtracted from a scan."""
     form = "hollow" if radius < 0 else "sphere"
     return (
         f"{file}: the subtracted paraboloid is as curved as a {form} with a radius of "

@@ -242,7 +242,7 @@ def pull_off_of_punch(state: State) -> tuple[float, float]:
 
 
 def balances_are_reliable(state: State) -> bool:
-    """Whether the grid is fine enough to compute balances of the contact areas of `state`."""
+    """Whether the grid is fine enough to compute the balance (`balance_of`) of a contact area."""
     return state.contact.detachment != "pohrt-popov" and adhesive_nodes(state) >= _RESOLVED
 
 

@@ -114,7 +114,7 @@ def yield_bound(contact: Contact, indentation: float, residual: float) -> tuple[
 def pressure_bound(
     contact: Contact, indentation: float, residual: float
 ) -> tuple[Array | float, int]:
-    """Return the pressure bound (Pa) of a solve, and the number of convolutions that it took."""
+    """Return the pressure bound (Pa), and the number of convolutions that the bound took."""
     if contact.grows:
         return yield_bound(contact, max(indentation, 0.0), residual)
     return contact.yield_pressure, 0
@@ -134,7 +134,7 @@ def bound_after(state: State, indentation: float, residual: float) -> tuple[Arra
 
 
 def bound_of(contact: Contact, measure: Array, ridge: Array | float = 0.0) -> Array:
-    """Return the pressure bound (Pa) for `measure`, the strain measured as a pressure (Pa).
+    """Return the pressure bound (Pa) for the strain measure `measure`, which has the unit Pa.
 
     `ridge` describes the shape of the asperity, from 0 (round) to 1 (ridge).
     """

@@ -48,7 +48,7 @@ from restitution.numerics.truncated_newton import minimise_locally
 # E* z₀²/w, and sqrt(R* z₀). On coarser grids the edge of the contact is pinned between nodes, which
 # makes the dissipated energy and the pull-off force wrong.
 COARSEST = 0.3
-COMPANION = "companion"  # provenance key of a surface that serves only to compare grids
+COMPANION = "companion"  # provenance key that marks the surface of a companion curve
 
 # A solve includes the nodes at which the gap between the rigid bodies is below this multiple of z₀.
 _REACH = 12.0

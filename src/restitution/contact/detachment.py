@@ -242,11 +242,12 @@ class Edge:
 
 
 def _curvature(touching: Mask, nodes: Nodes, faces: NDArray[np.intp]) -> Array:
-    """Mean curvature (1/cell) of the outline of the patch of each edge node, at most 0.35.
+    """Mean curvature (1/cell) of the contact edge, for each edge node; larger values become 0.35.
 
-    It is 2π divided by the perimeter of the patch. The perimeter is estimated as π/4 times the
-    number of faces between the patch and the nodes outside. The factor is the average ratio of the
-    length of a smooth outline to the length of its staircase.
+    The mean is taken over the outline of the patch of the node. It is 2π divided by the perimeter
+    of the patch. The perimeter is estimated as π/4 times the number of faces between the patch and
+    the nodes outside. The factor is the average ratio of the length of a smooth outline to the
+    length of its staircase.
     """
     patch = _patch_numbers(touching, nodes)
     total = np.bincount(patch, weights=faces)[patch]

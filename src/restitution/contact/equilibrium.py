@@ -52,7 +52,7 @@ MAX_ITERATIONS = 1000  # iterations after which a solve counts as not converged
 
 @dataclass(frozen=True)
 class HeldNodes:
-    """The nodes of a box that are held in contact and can carry tension.
+    """Nodes that are held in contact and can carry tension, on the box of a solve.
 
     `mask` marks the nodes, `tension` (Pa) is the largest tension allowed, and `first_guess` (Pa;
     None means zero) is the initial pressure. `mask` and `first_guess` are arrays on the box.

@@ -162,7 +162,8 @@ def half_space(
     device = current()
 
     def kernel(i: NDArray[np.int64], j: NDArray[np.int64]) -> Array:
-        # FreeConvolution passes i as a row and j as a column, so they are exchanged here.
+        # FreeConvolution works with transposed arrays: the lags i along x are a row, and the lags j
+        # along y are a column. Hence the exchange of arguments and spacings.
         return influence_coefficients(j, i, spacing[::-1], contact_modulus, device)
 
     return FreeConvolution(kernel, shape, device)

@@ -39,8 +39,8 @@ from restitution.numerics.read_only import freeze
 PULL_INCREMENT = 1e-10
 # Quadrature of the force of a truncated contact. The tolerance is a fraction of force times
 # indentation. The margin is a multiple of the tolerance and is added to the error. The third value
-# is the initial number of intervals. The integrand can be zero up to first yield. With only one
-# interval it could therefore be zero at all sampled depths.
+# is the initial number of intervals. The integrand is the part of the force due to yielding. It is
+# zero up to first yield. With only one interval it could be zero at all sampled depths.
 _TRUNCATION_TOLERANCE, _TRUNCATION_MARGIN, _TRUNCATION_PANELS = 3e-5, 10.0, 4
 # Relative tolerance of the integral of an adhesive force. The force jumps as asperities attach,
 # which limits the accuracy. A relative error of 1.5e-3 of the loading work changes the restitution

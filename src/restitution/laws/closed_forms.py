@@ -202,7 +202,7 @@ def _hertz(b: Bodies, V: Array) -> Form:
     return Form(
         within(min(b.yield_velocity, b.small_velocity) >= V, np.ones_like(V)),
         f"nothing yields and the contact is small, {_elastic_range(b)}",
-        {} if b.elastic else {"yield_pressure_Pa": b.p_y},
+        {} if b.elastic else {"yield_pressure_Pa": b.onset},
     )
 
 

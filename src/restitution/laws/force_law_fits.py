@@ -347,7 +347,7 @@ def _judged(
     fitted_to: str = "the coefficient of restitution",
     note: str = "",
 ) -> FittedLaw:
-    """Make the fitted law, with its COR at the points and its deviations from the computed COR.
+    """Make the fitted law, with its COR at the velocities of `law` and its deviations from `law`.
 
     `ends` states at which force or indentation the contact of the force law ends.
     """

@@ -91,9 +91,9 @@ class CompactFit(_Stored):
 
     `coefficients` are c_k, `centre` is V₀, `width` is w and `adhesion` is s (m²/s²). All velocities
     are in m/s. e = 0 where the formula gives a negative e² and for V ≤ `sticks_below`; e = 1 for
-    V ≤ `elastic_below`. At `adhesive_below`, adhesion lowers e² by 0.01. The fit uses the resolved
-    points. `lowest` and `highest` are the velocities of the first and the last of them; outside
-    this range the fit has no value.
+    V ≤ `elastic_below`. At `adhesive_below`, adhesion lowers e² by 0.01. The fit uses the
+    resolved points, at which the grid resolves the contact. `lowest` and `highest` are the
+    velocities of the first and the last resolved point. Outside this range the fit has no value.
 
     `worst` is the largest difference between fitted and computed e at the resolved points.
     `between` estimates the largest error between these points. It is the larger of `worst` and the

@@ -121,8 +121,8 @@ class StoredForce:
         if not depths[0] * (1 - _SAME) <= deepest <= depths[-1] * (1 + _SAME):
             raise DomainError(
                 f"the impact reaches a depth of {1e9 * deepest:.4g} nm, but unloading curves are "
-                f"stored only from {1e9 * depths[0]:.4g} to {1e9 * depths[-1]:.4g} nm, and nothing "
-                "is extrapolated; raise unloading.curves, or choose another velocity"
+                f"stored only from {1e9 * depths[0]:.4g} to {1e9 * depths[-1]:.4g} nm and are not "
+                "extrapolated; give a larger unloading.curves, or choose another velocity"
             )
         end, largest = self.separation(deepest), self.loading(deepest)
         shape, blended = self.shape(deepest)

@@ -86,7 +86,8 @@ class Family:
     def case(self, radius: float) -> str:
         """Write the text of the case for the reduced `radius` (m).
 
-        The velocities of the case cover the range of W/R*³ of all pairs of the family.
+        W is the loading work. The velocities of the case cover the range of W/R*³ of all pairs that
+        share this curve.
         """
         return tomli_w.dumps(self._content(radius, self._grid))
 

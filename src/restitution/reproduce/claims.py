@@ -34,7 +34,11 @@ _NEAR = 0.05  # largest relative difference at which COR counts as that of the s
 
 @dataclass(frozen=True)
 class Finding:
-    """A claim, the result, the number that decides on agreement, and a count of resolved depths."""
+    """A claim of the paper and what the computed results say about it.
+
+    `found` describes the result in words. `number` is the value that decides whether the results
+    agree with the claim. `resolved` counts the resolved depths.
+    """
 
     figure: str
     claim: str

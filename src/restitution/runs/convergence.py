@@ -49,8 +49,8 @@ from restitution.runs.log import RunLog, Say, ignore
 from restitution.runs.refinement import settled, with_chosen_adhesion
 from restitution.runs.run import run_case
 
-# For each refinement factor: the additional approach to first touch (m), compared with the finest
-# grid, and the rows of the curve.
+# The results on each grid, by its refinement factor: how much later this grid touches than the
+# finest grid (approach in m), and the rows of its curve.
 _Runs = dict[int, tuple[float, list[Row]]]
 
 

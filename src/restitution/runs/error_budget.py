@@ -126,7 +126,9 @@ def unseen_yield(companions: Companions, waves: Band, rows: Sequence[Row]) -> Ar
 def grid_error(
     change: Array, unseen: Array, work: Array, rows: Sequence[Row], octaves: float
 ) -> tuple[Array, Array]:
-    """Discretisation error of the COR of each row, and the part due to waves that the grid omits.
+    """Discretisation error of COR of each row, and how much of it is due to omitted waves.
+
+    Omitted waves are waves of the scan that are too short for the grid.
 
     `change` is COR minus its value on cells twice as large, at the loading work `work` (J).
     `unseen` comes from `unseen_yield`, and `octaves` is `Band.octaves`.

@@ -48,9 +48,10 @@ def mirrored(scan: Surface, grid: Grid) -> Surface:
 
 
 def _pixel(along: Array, n: int, h: float) -> Array:
-    """Convert coordinates `along` (m) of the tiled surface to fractional pixel indices in the scan.
+    """Convert coordinates (m) on the tiled surface to fractional pixel indices in the scan.
 
-    The scan has `n` pixels with the spacing `h` (m) along this axis.
+    `along` are coordinates along one axis, x or y. The scan has `n` pixels with the spacing `h` (m)
+    along this axis.
     """
     from_edge = np.mod(along / h + n // 2 + 0.5, 2 * n)
     folded: Array = np.minimum(from_edge, 2 * n - from_edge) - 0.5

@@ -37,7 +37,7 @@ from restitution.surfaces.wave_spectrum import Modes, WaveSpectrum, spectrum_of
 
 LEAST_PIXELS = 16  # smallest number of pixels of a scan along each axis
 _UNADJUSTED = 0.01  # fraction of the scan's mean square height in waves that are not adjusted
-_FIRST_BAND = 2**20  # largest number of nodes of the grid for the band of the longest waves
+_FIRST_BAND = 2**20  # largest number of nodes of the grid on which the longest waves are adjusted
 _LEAST_FIRST = 8  # smallest number of cells along a scan edge, on the grid for the longest waves
 
 # Largest number of adjustments of a band: _WORK divided by the number of nodes of the band's grid,

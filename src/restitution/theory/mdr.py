@@ -268,8 +268,8 @@ class MDR:
         """Elastic recovery d_e + δ_R (m) on unloading from the indentation `d`.
 
         d_e is the penetration of the indenter at full load (`_elastic_depth`). δ_R is a correction
-        for the finite size of the sphere. The code uses
-        F_max/(2πGa²d_e) = E*/(4Ga) = 1/(2a(1 − ν)).
+        for the finite size of the sphere. In its formula, F_max/(2πGa²d_e) is replaced by
+        1/(2a(1 − ν)), which is equal to it.
         """
         a, d_e, nu = self._contact_radius(d), self._elastic_depth(d), self.poissons_ratio
         z = self.radius - d + d_e

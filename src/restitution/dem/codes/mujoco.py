@@ -70,7 +70,9 @@ class Contact:
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """Write an MJCF file to include and a test collision that prints e.
+    """Write two files: contact parameters to include in an MJCF model, and a test collision.
+
+    The test collision prints e.
 
     Returns file names and texts. Raises `CaseError`, `DomainError`.
     """

@@ -168,7 +168,7 @@ def mean_damped_preconditioner(inverse: Operator, p: Array, b: Array, upper: Bou
 def mean_damping(inverse: Operator, p: Array, b: Array, upper: Bound) -> float:
     """Return the factor of `mean_damped_preconditioner`, or 1 if no damping is needed."""
     free, free_nodes, contact_nodes = _between_the_bounds(p, upper)
-    if free_nodes <= 0.5 * contact_nodes:  # no guess, or most contact nodes yield
+    if free_nodes <= 0.5 * contact_nodes:  # no initial guess of p, or most contact nodes yield
         return 1.0
     constant: Any = free.astype(np.float32)
     image = inverse(constant, out=np.empty_like(constant))

@@ -145,10 +145,10 @@ def add_short_waves(guess: Array, displacement: Array, inverse: Operator, b: Arr
 
 
 def balanced_preconditioner(inverse: Operator, p: Array, b: Array) -> Operator:
-    """Return `inverse` with damped local means, both of its argument and of its result.
+    """Return an operator that damps local means, applies `inverse`, and damps local means again.
 
-    In total, the response to a local mean is damped by the factor of `mean_damped_preconditioner`:
-    the means of the argument and of the result are each damped by the square root of this factor.
+    In total, the response to a local mean is damped by the factor of `mean_damped_preconditioner`.
+    Each of the two steps damps by the square root of this factor.
     """
     share = 1.0 - math.sqrt(mean_damping(inverse, p, b, math.inf))
     if share == 0.0:

@@ -28,8 +28,8 @@ _MAX_SOLVES = 60  # solves on one grid after which the search counts as not conv
 
 # Tolerance of a solve as a fraction of the estimated error of the multiplier D.
 _ACCURACY = 0.05
-# Largest error of the mean that the violation of the optimality conditions may cause, as a fraction
-# of the tolerance of the mean.
+# The violation of the optimality conditions causes an error of the mean. Largest allowed value of
+# this error, as a fraction of the tolerance of the mean.
 _MEAN_SHARE = 0.5
 # `MeanTarget.residual` and `MeanTarget.precision` on coarser grids.
 _COARSE_RESIDUAL, _COARSE_MEAN = 1e-2, 0.02
