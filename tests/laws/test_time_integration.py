@@ -226,7 +226,7 @@ def test_between_stored_curves_it_is_near_and_beyond_them_refused(run):
     assert found.restitution == approx(law.at(between).restitution, abs=0.01)
     with pytest.raises(DomainError, match="outside the computed velocities"):
         collide_in_time(force, 1.01 * law.highest)
-    with pytest.raises(DomainError, match="nothing is extrapolated"):
+    with pytest.raises(DomainError, match="are not extrapolated"):
         collide_in_time(force, 0.5 * law.lowest)
     for velocity in (0.0, -1.0, math.nan):
         with pytest.raises(DomainError):
@@ -247,7 +247,7 @@ def test_the_verb(run, cli, refused, tmp_path):
     assert float(last[-1]["closing_velocity_m_per_s"]) < 0
     assert "exists" in refused("simulate", out, "-o", tmp_path / "courses.csv")
     assert "has no unit" in refused("simulate", out, "--velocity", "1")
-    assert "nothing" in refused("simulate", out, "--velocity", "1e-6 m/s")
+    assert "not extrapolated" in refused("simulate", out, "--velocity", "1e-6 m/s")
     assert "holds no results" in refused("simulate", tmp_path)
 
 
