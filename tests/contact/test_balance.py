@@ -1,6 +1,7 @@
 """Balances of contact areas, and unloading that does not depend on the steps or the depth."""
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,7 +11,7 @@ from restitution import Body, Contact, Grid, Pair, Surface, collide, solve
 from restitution.contact.adhesion import balance_of
 from restitution.contact.loading import step
 from restitution.contact.separation import separate, separation_of
-from restitution.contact.unloading_curve import UnloadingCurve, unloading_curve
+from restitution.contact.unloading_curve import SharedUnloading, UnloadingCurve, unloading_curve
 from restitution.theory import JKR
 from tolerance import approx
 
@@ -70,6 +71,17 @@ def test_unloading_joins_that_from_a_shallower_depth():
     )
     lost = deep.stored_energy - second.unloading_work
     assert second.adhesive_loss == approx(lost, abs=second.unloading_work_error)
+
+
+def test_unloading_does_not_join_beyond_the_end_of_a_known_curve():
+    contact, _ = sphere((0.31, 0.17), 6 * BREAK)
+    deep = solve(contact, 6 * BREAK)
+    shared = SharedUnloading.of(deep, list(separate(solve(contact, 4 * BREAK))))
+    x, F = shared.curve.indentation, shared.curve.force
+    inside, end = 0.5 * (x[1] + x[-1]), 1.001 * x[-1] - 0.001 * x[0]
+    force = float(np.interp(inside, x[::-1], F[::-1]))
+    assert shared.agrees(replace(deep, balance=(inside, force)))
+    assert not shared.agrees(replace(deep, balance=(end, float(F[-1]))))
 
 
 def test_unloading_of_yielded_bodies_joins_nothing():

@@ -342,3 +342,17 @@ def test_a_node_that_begins_to_yield_does_so_near_its_last_bound():
     onset = state.contact.first_yield_pressure
     assert first == approx(2e-9 * (onset + 0.8 * (1.5e9 - onset)) * nodes * area, rel=1e-9)
     assert its_error == approx(0.25 * 2e-9 * abs(1.5e9 - onset) * nodes * area, rel=1e-9)
+
+
+def test_the_smooth_pressure_is_centred_at_the_apex():
+    """The apex of smooth adhesive bodies lies between nodes, differently along x and along y."""
+    h = 0.3e-6
+    contact = Contact(PAIR, smooth(Grid((32, 24), (h, h))), yield_strength=Y, work_of_adhesion=0.05)
+    x0, y0 = contact.apex
+    assert 0 < y0 < x0
+    nodes = np.nonzero(np.ones(contact.grid.nodes, dtype=bool))
+    found = cavity._smooth_pressure(contact, (slice(0, 32), slice(0, 24)), nodes, 1e-3)
+    hertz = Hertz(PAIR.radius, PAIR.contact_modulus)
+    r = np.hypot.outer(contact.grid.x - x0, contact.grid.y - y0)
+    assert found.max() > 0
+    assert found.reshape(r.shape) == approx(hertz.pressure(r, hertz.indentation(1e-3)), rel=1e-12)

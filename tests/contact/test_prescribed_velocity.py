@@ -3,6 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from restitution.contact import prescribed_velocity
 from restitution.contact.bodies import Body, Pair
 from restitution.contact.contact import Contact, smooth
 from restitution.contact.loading import solve
@@ -96,3 +97,15 @@ def test_a_work_that_is_negative_at_small_depths_is_no_way_back():
     state = solve_at_velocity(contact, 0.05)
     assert state.indentation > shallow.indentation
     assert _velocity(state) == approx(0.05, rel=5e-3)
+
+
+def test_the_bracket_grows_from_a_depth_that_is_too_shallow(rough_contact, monkeypatch):
+    contact = rough_contact()
+    velocity = _velocity(solve(contact, 20 * NM))
+    found = solve_at_velocity(contact, velocity)
+    monkeypatch.setattr(prescribed_velocity._Search, "newton", lambda *_: None)
+    monkeypatch.setattr(
+        prescribed_velocity._Search, "first_depth", lambda *_: 0.2 * found.indentation
+    )
+    again = solve_at_velocity(contact, velocity)
+    assert again.indentation == approx(found.indentation, rel=1e-4)
