@@ -43,6 +43,18 @@ def test_spikes_are_removed_and_nothing_else_changes():
     assert np.abs(cleaned.height - ROUGH.height).max() < 0.5 * 50e-9
 
 
+@pytest.mark.parametrize("bend", [0.0, 1 / 25e-6, -1 / 60e-6])
+def test_spikes_on_a_slope_are_removed(bend):
+    """On a steep slope most pixels equal the median of their neighbours."""
+    x, y = np.meshgrid(GRID.x, GRID.y, indexing="ij")
+    form = 0.1 * x - 0.05 * y + 0.5 * bend * (x**2 + y**2)
+    spoiled = ROUGH.height.copy()
+    spoiled[[10, 40, 70], [20, 60, 30]] += 0.5e-6
+    flat, sloped = (remove_outliers(Surface(spoiled + f, GRID), 8) for f in (0 * form, form))
+    assert flat.provenance["outliers"] == sloped.provenance["outliers"] == 3
+    assert sloped.height - form == approx(flat.height, abs=2e-8)
+
+
 def test_a_slipped_scan_line_is_removed():
     spoiled = ROUGH.height.copy()
     spoiled[20:70, 33] += 3e-7

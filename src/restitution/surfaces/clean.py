@@ -10,6 +10,7 @@ import numpy as np
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.surfaces.fill import fill_harmonically
+from restitution.surfaces.level import level
 from restitution.surfaces.surface import Surface
 
 Range = tuple[float, float]
@@ -63,10 +64,12 @@ def crop(surface: Surface, *, x: Range | None = None, y: Range | None = None) ->
 def remove_outliers(surface: Surface, threshold: float) -> Surface:
     """Replace outliers by harmonic interpolation of the pixels around them.
 
-    Each height is compared with the median of the 5 x 5 pixels around it. A pixel is an outlier if
-    this difference exceeds `threshold` standard deviations. The standard deviation of the
-    differences is estimated from their median absolute value, because outliers hardly change a
-    median.
+    First the least-squares paraboloid is subtracted from a copy of the heights. On a slope, a pixel
+    would often equal the median of its neighbours, which hides the outliers. Each height is then
+    compared with the median of the 5 x 5 pixels around it. A pixel is an outlier if this difference
+    exceeds `threshold` standard deviations. The standard deviation of the differences is estimated
+    from their median absolute value, because outliers hardly change a median.
+
     The number of outliers and their largest difference are added to the provenance.
 
     Args:
@@ -84,8 +87,8 @@ def remove_outliers(surface: Surface, threshold: float) -> Surface:
 
     if not (math.isfinite(threshold) and threshold > 0):
         raise SurfaceError(f"threshold: {threshold:g} is not a positive number")
-    height = surface.height
-    step = np.abs(height - median_filter(height, _NEIGHBOURHOOD, mode="reflect"))
+    height, level_height = surface.height, level(surface, "curvature").height
+    step = np.abs(level_height - median_filter(level_height, _NEIGHBOURHOOD, mode="reflect"))
     deviation = _SIGMA * float(np.median(step))
     # If `deviation` is zero, at least half of the pixels equal their local median. A threshold in
     # standard deviations is then meaningless, so no pixel counts as an outlier.
