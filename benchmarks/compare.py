@@ -71,12 +71,14 @@ the problem. Nothing is kept from earlier solutions, with one exception: FFTW ke
 SlipPy does most of its planning only once. "first" is the time to start the process with its
 imports, plus the time of the first solution.
 
-**Accuracy.** Every program defines its tolerance in its own way. Each program runs with the loosest
-tolerance, among the powers of ten, with which the contact conditions (0 ≤ p ≤ p_y) hold to
-{residual} δ. The conditions are checked from the pressures alone, by code that none of the programs
-use. This code computes the gap g = K p + h₀ − δ with Love's formula in extended precision and a
-zero-padded FFT over the whole grid. If a program needs more than {limit:.0f} s for a solution, or
-does not reach this accuracy at any tolerance, the table says so.
+**Accuracy.** Every program defines its tolerance in its own way. The benchmark tries powers of ten
+as the tolerance, and uses the loosest one with which the contact conditions (0 ≤ p ≤ p_y) hold to
+{residual} δ. Here p is the contact pressure, and p_y is its limit in plastic contacts. The
+conditions are checked from the computed pressures alone, by code that none of the programs use.
+This code computes the gap g = h₀ + K p − δ. Here K p, the displacement due to the pressure, follows
+from Love's formula in extended precision and a zero-padded FFT over the whole grid. If a program
+needs more than {limit:.0f} s for a solution, or does not reach this accuracy at any tolerance, the
+table says so.
 
 **Repetitions.** The programs take turns {rounds} times, in an order that is reversed each time.
 Times are medians. Ratios are computed for each turn, and the table shows their median
@@ -88,9 +90,9 @@ several threads most.
 
 **Settings.** Each program runs with the best settings that were found, and in the units that suit
 it best (see the workers in `benchmarks/peers`). For a half-space that is not periodic, Tamaas
-accepts only a force, not an indentation. It is given the correct force, so it need not search for
-the force. The installed package of Tamaas runs on one core. SlipPy uses one core on grids of up to
-256², where its threads save no time.
+accepts only a force, not an indentation. The benchmark gives Tamaas the correct force, so Tamaas
+does not have to search for the force. The installed package of Tamaas runs on one core. SlipPy uses
+one core on grids of up to 256², where its threads save no time.
 """
 
 

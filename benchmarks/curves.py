@@ -52,12 +52,13 @@ REPORT = """\
 
 {date}, {machine}. Written by `make bench`.
 
-All contacts are those of two steel spheres (R* = 250 µm, E* = 112 GPa, p_y = 750 MPa) on {nodes}²
-nodes of 0.25 µm. The times include the computation of the kernels of the convolutions, but not the
-creation of the contact. They are medians of {repeats} runs (smallest and largest). The curves of
-Fig. 10 were computed once. The column U is the time divided by that of one zero-padded convolution
-(forward and inverse) on the same grid with scipy.fft, two workers and float64. The time of this
-convolution was measured between the runs and is {unit_ms:.0f} ms.
+Every contact is between two steel spheres. Their reduced radius is R* = 250 µm, their contact
+modulus is E* = 112 GPa, and their yield pressure is p_y = 750 MPa. The grid has {nodes}² nodes with
+a spacing of 0.25 µm. The times include the computation of the kernels of the convolutions, but not
+the creation of the contact. They are medians of {repeats} runs (smallest and largest). The curves
+of Fig. 10 were computed once. The column U is the time divided by that of one zero-padded
+convolution (forward and inverse) on the same grid with scipy.fft, two workers and float64. The time
+of this convolution was measured between the runs and is {unit_ms:.0f} ms.
 
 | what | time, s | U | convolutions | largest error of COR |
 |---|---|---|---|---|

@@ -56,9 +56,9 @@ that grows divided by the time with the constant bound. The table shows the medi
 |---|---|---|---|---|
 {rows}
 
-With the bound that grows, each depth needs a second solve: that of the elastic contact at twice the
-depth, to a root mean square residual of 5e-5 (`contact/cavity.py`). With both bounds, the unloading
-takes one solve for each depth.
+With the bound that grows, each depth needs a second solve (`contact/cavity.py`). It solves the
+elastic contact at twice the depth. Its tolerance is a root mean square residual of 5e-5. With both
+bounds, the unloading takes one solve for each depth.
 """
 
 

@@ -49,17 +49,18 @@ of 0.25 µm. The surface is self-affine with the Hurst exponent H = 0.8, a roll-
 eighth of the period and eight nodes per shortest wavelength (`seed = 1`). The numbers in brackets
 in the table are the nominal pressures divided by E* times the rms slope.
 
-Every program solves for a prescribed nominal pressure. Each program runs with the loosest
-tolerance, among the powers of ten, with which the contact conditions hold to {residual} δ and the
-relative error of the force is below 1e-6. Here δ is the indentation at the prescribed pressure.
-Both requirements are checked from the computed pressures alone, by code that none of the programs
-use. In the table, "residual" is the largest violation of the contact conditions divided by δ.
-"force" is the relative difference between the computed and the prescribed force, and "nodes" is the
-number of nodes in contact minus that of restitution. Whatever its tolerance, restitution
-meets the prescribed pressure to 1e-8. This requires accurate solutions, so a loose tolerance
-suffices for restitution (column "own tolerance"). The programs take turns {rounds} times, in an
-order that is reversed each time; ratios are medians (smallest–largest). [Beside other
-programs](peers.md) states what a time includes.
+Every program solves for a prescribed nominal pressure. The benchmark tries powers of ten as the
+tolerance of each program. It uses the loosest tolerance that meets two requirements: the contact
+conditions hold to {residual} δ, and the relative error of the force is below 1e-6. Here δ is the
+indentation at the prescribed pressure. Both requirements are checked from the computed pressures
+alone, by code that none of the programs use. In the table, "residual" is the largest violation of
+the contact conditions divided by δ. "force" is the relative difference between the computed and the
+prescribed force, and "nodes" is the number of nodes in contact minus that of restitution. At any
+tolerance, restitution meets the prescribed pressure to 1e-8. For this purpose it solves the contact
+more accurately than a loose tolerance requires. A loose tolerance therefore suffices for
+restitution (column "own tolerance"). The programs take turns {rounds} times, in an order that is
+reversed each time; ratios are medians (smallest–largest). [Beside other programs](peers.md) states
+what a time includes.
 
 Tamaas solves elastic contact by `PolonskyKeerRey` and plastic contact by `KatoSaturated`.
 ContactMechanics solves them by `minimize_proxy` with `external_force`. A program that needs more
