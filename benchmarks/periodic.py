@@ -55,10 +55,10 @@ conditions hold to {residual} δ, and the relative error of the force is below 1
 indentation at the prescribed pressure. Both requirements are checked from the computed pressures
 alone, by code that none of the programs use. In the table, "residual" is the largest violation of
 the contact conditions divided by δ. "force" is the relative difference between the computed and the
-prescribed force, and "nodes" is the number of nodes in contact minus that of restitution. At any
-tolerance, restitution meets the prescribed pressure to 1e-8. For this purpose it solves the contact
-more accurately than a loose tolerance requires. A loose tolerance therefore suffices for
-restitution (column "own tolerance"). The programs take turns {rounds} times, in an order that is
+prescribed force, and "nodes" is the number of nodes in contact minus the number found by
+`restitution`. `restitution` always meets the prescribed pressure to 1e-8, so it solves the contact
+more accurately than its tolerance demands. It therefore meets both requirements at a loose
+tolerance (column "own tolerance"). The programs take turns {rounds} times, in an order that is
 reversed each time; ratios are medians (smallest–largest). [Beside other programs](peers.md) states
 what a time includes.
 

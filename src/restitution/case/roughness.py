@@ -229,10 +229,11 @@ class MeasuredRoughness(Table):
         return replace(finer, provenance={**finer.provenance, "refined": factor, "refinement": how})
 
     def _steps_to_pixel(self, grid: Grid, pixels: Grid, factor: int) -> int:
-        """Number of parts into which each cell of `grid` is divided along each axis for the scan.
+        """Number of parts into which each cell of `grid` is divided along each axis.
 
-        It is the smallest power of two for which the parts are not larger than the pixels. It must
-        also divide `factor`. If `factor` is too small, the parts are still larger than the pixels.
+        The scan is placed on these parts. Their number is a power of two that divides `factor`. It
+        is the smallest for which the parts are not larger than the pixels or, if there is none, the
+        largest.
         """
         steps = 1
         while factor % (2 * steps) == 0 and any(

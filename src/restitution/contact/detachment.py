@@ -67,9 +67,9 @@ _RELEASE_RADIUS, _LARGEST_RADIUS = 3, 40
 _LARGEST_ON_COARSE_GRIDS = 1.04
 # A grid counts as fine if the rim under tension is wider than _RESOLVED_RIM (cells). On a fine grid
 # the mean of G is accurate. A patch is at rest if the mean of max(1 − sqrt(w/G), 0) over its edge
-# nodes is below _AT_REST, with the work of adhesion w. On a fine grid the tension limit is not
-# applied, because nodes at the kinks of an edge reach this limit as soon as G = w. Their release
-# would roughen the edge.
+# nodes is below _AT_REST, with the work of adhesion w. On a fine grid, a node is not released
+# because its tension exceeds a limit. Nodes at the kinks of an edge would reach such a limit as
+# soon as G = w, and their release would roughen the edge.
 _RESOLVED_RIM, _AT_REST = 2.0, 0.002
 # Smallest width (cells) of a strip along the edge whose nodes are all released together. If the
 # strip is narrower, single nodes are released.

@@ -91,13 +91,13 @@ def solve_pressure(
 ) -> State:
     """Solve for a pressure of at most `limit` on the surface deformed by `history`.
 
-    The lower bound of the pressure is minus the largest tension at the `held` nodes, and 0 at other
-    nodes. Without adhesion `held` is None. `limit` (Pa) is a number or an array of the shape of the
-    grid. `box` must contain the `candidate_box` and all held nodes. `residual` is the tolerance on
-    the violation of the contact conditions, relative to the largest overlap before deformation or,
-    with adhesion, to `Contact.residual_length`. Contact at the grid edge is not checked here.
-    Raises `NotConvergedError`, and `DomainError` if a periodic contact of elastic bodies is already
-    complete at a smaller indentation.
+    At the nodes `held` in contact by adhesion, the pressure may fall to −`held.tension`. Elsewhere
+    its lower bound is 0. Without adhesion `held` is None. `limit` (Pa) is a number or an array of
+    the shape of the grid. `box` must contain the `candidate_box` and all held nodes. `residual` is
+    the tolerance on the violation of the contact conditions, relative to the largest overlap before
+    deformation or, with adhesion, to `Contact.residual_length`. Contact at the grid edge is not
+    checked here. Raises `NotConvergedError`, and `DomainError` if a periodic contact of elastic
+    bodies is already complete at a smaller indentation.
     """
     device, shape = current(), shape_of(box)
     b = _overlap(contact, indentation, box, history)

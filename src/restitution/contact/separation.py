@@ -274,7 +274,8 @@ def _plan(state: State, tolerance: float) -> tuple[float, float]:
     # With the loading work W_l, dCOR = dW/(2 W_l COR). If dCOR is the tolerance, the error of the
     # work may be dW = 2 W_l COR dCOR. Half of dW is reserved for the error of the loading work.
     allowed = 1.0 * tolerance * max(restitution, 0.05) * work
-    if balances_are_reliable(state):  # balances do not depend on late releases
+    # Forces at balances do not depend on how late nodes are released, so they need no limit.
+    if balances_are_reliable(state):
         return recovery, math.inf
     return recovery, allowed / (_LATENESS[state.contact.detachment] * recovery)
 

@@ -17,8 +17,8 @@ from restitution.contact.adhesion import balances_are_reliable
 from restitution.contact.state import Array, State
 from restitution.numerics.quadrature import integrate_curve
 
-_FEW_NODES = 10  # a contact of fewer nodes has too few edge nodes to compute a balance
-_SMOOTHED = 11  # number of points to which each parabola that smooths the force is fitted
+_FEW_NODES = 10  # below this number of contact nodes, the mean of G along the edge is unreliable
+_SMOOTHED = 11  # parabolas smooth the force; each is fitted to this number of points
 
 # A change of the force between two points is a jump if it exceeds this fraction of the largest
 # tension.
@@ -150,7 +150,7 @@ class SharedUnloading:
     """Known states of unloading from one depth, to be reused in unloading from a larger depth.
 
     While an elastic contact unloads, its state depends only on the indentation, not on the depth at
-    which unloading began. The two paths therefore join.
+    which unloading began. Unloading from the larger depth therefore passes through the same states.
     """
 
     states: Sequence[State]

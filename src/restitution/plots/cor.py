@@ -9,7 +9,7 @@ import numpy as np
 
 from restitution.plots.figure import Array, Axis, Band, Chart, Mark, Points, Series, has_error
 
-_STEP = 0.1  # spacing of the values at which the axis may end
+_STEP = 0.1  # the limits of the axis are multiples of this value
 _MARGIN = 0.02  # smallest distance of the values from the ends of the axis
 
 

@@ -2,26 +2,27 @@
 
 `AdhesiveThorntonNing` adds adhesion. C. Thornton, Z. Ning, Powder Technology 99 (1998) 154–162; the
 plastic law was published by Thornton, J. Appl. Mech. 64 (1997) 383–386. The law cuts off the Hertz
-pressure at the yield pressure p_y and does not restore equilibrium, so the contact radius a still
-follows a² = R*δ. The index y marks values at first yield. The relative indentation is x = δ/δ_y and
-the relative force f = F/F_y. The works W are in units of F_y δ_y:
+pressure at the yield pressure p_y. It does not compute how the lower pressure changes the
+deformation, so the contact radius a still follows a² = R*δ. The index y marks values at first
+yield. The relative indentation is x = δ/δ_y and the relative force f = F/F_y. The works W are in
+units of F_y δ_y:
 
     loading     f = x^{3/2} for x ≤ 1, then the tangent  f = (3x − 1)/2,  F = F_y + πp_yR*(δ − δ_y)
                 W_l = ⅖ x^{5/2} for x ≤ 1, then  W_l = ⅖ + (x − 1) + ¾ (x − 1)²
     unloading   Hertz with a flattened radius R_p and a residual indentation δ_p:
                 F = 4/3 E* R_p^½ (δ − δ_p)^{3/2},  (δ_max − δ_p)/δ_y = f/x^½,  W_u = ⅖ f²/x^½
                 At δ_max, force and contact radius are the same as on loading, so
-                R_pF = R*F_Hertz(δ_max),  R_p/R* = x^{3/2}/f
+                R_p F = R* F_Hertz(δ_max),  R_p/R* = x^{3/2}/f
     impact      ½ m* V² = W_l, e² = W_u/W_l; the contact ends where F returns to zero.
 
 Restitution depends on x alone, or equivalently on v = V/V_y alone, because f² = (6v² − 1)/5 relates
 x to v exactly.
 
 Valid for quasi-static, normal, frictionless impacts of smooth spheres with a ≪ R*. Up to yield the
-law is Hertz. Beyond yield, a contact that restores equilibrium at the same p_y carries a larger
-force. The difference grows with depth, because the area of a real yielded contact tends to 2πR*δ,
-whereas this law keeps the area πR*δ. p_y is a contact pressure, as in `FirstYield`, and not the
-yield strength.
+law is Hertz. Beyond yield, a contact whose deformation is in equilibrium with pressures of at most
+p_y carries a larger force. The difference grows with depth, because the area of a real yielded
+contact tends to 2πR*δ, whereas this law keeps the area πR*δ. p_y is a contact pressure, as in
+`FirstYield`, and not the yield strength.
 Units, shapes and errors are those of `restitution.theory`.
 """
 

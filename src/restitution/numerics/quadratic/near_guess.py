@@ -7,10 +7,11 @@ coarser grid is nearly right. Therefore the short waves of the pressure are adde
 negative pressures are set to zero. Then the positive pressures are lowered until the local means
 of the pressure are nearly the same as on the coarser grid.
 
-The preconditioner also protects the local means during the iterations. The approximate inverse
-turns the residual of short waves on separate contact patches into a change of the mean pressure.
-Later iterations would have to undo this change. So the preconditioner damps the local means of its
-argument (see `multilevel.mean_damped_preconditioner`) and the local means of its result.
+The preconditioner also keeps the local means nearly constant during the iterations. It is an
+approximate inverse of K. If it were applied to a residual with short waves on separate contact
+patches, it would also change the mean pressure, and later iterations would have to undo this
+change. So the preconditioner damps the local means of its argument (see
+`multilevel.mean_damped_preconditioner`) and the local means of its result.
 """
 
 from __future__ import annotations

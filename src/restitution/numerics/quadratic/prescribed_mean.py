@@ -50,10 +50,11 @@ class MeanTarget:
     residual: float
 
     def tolerance(self, multiplier: float, slope: float) -> float:
-        """Return the largest allowed violation of the optimality conditions, in the units of h.
+        """Return the largest allowed violation of the optimality conditions, a length like D.
 
-        `multiplier` is D, and `slope` is dD/dmean. A violation v changes the mean no more than a
-        change of D by v does. So `slope` converts the tolerance of the mean to a violation.
+        `multiplier` is D, and `slope` is dD/dmean. If the conditions are violated by v, the error
+        of the mean is at most v/slope. The allowed violation therefore is the allowed error of the
+        mean times `slope`.
         """
         by_residual = self.residual * abs(multiplier - self.compliance * self.mean)
         return min(by_residual, _MEAN_SHARE * self.precision * self.mean * slope)
