@@ -251,7 +251,7 @@ def _jumps(state: State) -> int:
 
 
 def _late_force(state: State) -> float:
-    """Half the jump of the force (N) when nodes were released at the end of the step to `state`."""
+    """Half the jump of the force (N) due to nodes that were released at the end of a step."""
     assert state.force_before_release is not None  # `unload_adhesive` always sets it
     return 0.5 * (state.force - state.force_before_release)
 

@@ -50,7 +50,8 @@ _SHAPE, _ALIGNED, _INDEPENDENT = 0.35, 4.0, 36.0
 # Relative errors of stiffness and impulse after yield. For rough contacts they are multiplied by
 # the largest ratio of the depths of two neighbouring unloading curves.
 _YIELDED_STIFFNESS, _YIELDED_IMPULSE = 0.01, 0.1
-# Ratio of the relative error of the impulse in full slip to |β| min(1, β²/µ²) (unlike materials).
+# For unlike materials in full slip, the relative error of the impulse is this factor times
+# |β| min(1, β²/µ²), with Dundurs' parameter β.
 _TURNED = 0.15
 # Unloading curves that start below this fraction of the largest indentation are ignored, except the
 # deepest of these curves.

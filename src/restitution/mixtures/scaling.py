@@ -23,8 +23,8 @@ from restitution.mixtures.family import Family, Meeting
 
 Array = NDArray[np.float64]
 
-# The interpolation error of COR may exceed the limit given for the mixture. It must then be at most
-# _SHARE times the error of the computed laws, and at most _MOST.
+# An interpolation error of COR above the limit given for the mixture is accepted if it is at most
+# _SHARE times the error of the computed laws and at most _MOST.
 _SHARE, _MOST = 0.25, 0.05
 _SAME = 1e-9  # largest relative difference of radii that count as equal
 

@@ -75,8 +75,8 @@ def loaded_depths(case: Case, folder: Path, contact: Contact) -> Iterator[Depth]
     Each load starts from the previous state on the same grid.
     """
     factors = case.factors()
-    # On a coarse grid, first touch is at a larger approach. The difference is added to the stored
-    # indentations, so it is also needed if loads or velocities are prescribed.
+    # A coarse grid first touches at a larger approach than the finest grid. The difference is added
+    # to all stored indentations, even if loads or velocities are prescribed.
     touches = later_touches(case, folder, set(factors)) if len(set(factors)) > 1 else {}
     for factor in sorted(set(factors), reverse=True):
         last = factor == factors[-1]

@@ -91,7 +91,7 @@ class WaveSpectrum:
 
 
 def spectrum_of(scan: Surface, period: tuple[float, float]) -> WaveSpectrum:
-    """Mean square heights of the waves of a twin of `scan` with edges `period` (m)."""
+    """Mean square heights of the waves of a twin of `scan`; `period` (m) are the twin's edges."""
     C = np.fft.fftshift(power_spectral_density(scan))
     waves = tuple(p / s for p, s in zip(period, scan.grid.size, strict=True))
     C *= 1 / (scan.grid.size[0] * scan.grid.size[1] * waves[0] * waves[1])
