@@ -1,10 +1,8 @@
 """Bad input: one clear line that names the key or file and the remedy, and nothing lost."""
 
 import os
-import pickle
 import time
 
-import numpy as np
 import pytest
 
 
@@ -224,81 +222,6 @@ def test_more_load_than_the_grid_carries(refused_case, case_text):
     span = case_text[case_text.index("[indentation]") : case_text.index("[unloading]")]
     message = refused_case((span, '[load]\nvalues = ["5 N"]\n'), verb="run")
     assert "load: 5 N is more than the whole grid carries at the yield pressure" in message
-
-
-def measured(case_text, line):
-    """The small case with a measured surface instead of its own."""
-    begin, end = case_text.index("[roughness]"), case_text.index("[grid]")
-    return case_text[:begin] + f'[roughness]\nkind = "measured"\n{line}\n' + case_text[end:]
-
-
-@pytest.mark.parametrize(
-    ("name", "content", "remedy"),
-    [
-        ("nan.npy", np.where(np.eye(90) > 0, np.nan, 0.0), 'roughness.undefined = "interpolate"'),
-        ("inf.npy", np.where(np.eye(90) > 0, np.inf, 0.0), 'roughness.undefined = "interpolate"'),
-        ("line.npy", np.zeros(90), "line.npy"),
-        ("cube.npy", np.zeros((9, 9, 9)), "cube.npy"),
-        ("complex.npy", np.zeros((90, 90), complex), "complex.npy"),
-        ("small.npy", np.zeros((20, 20)), "grid"),
-    ],
-)
-def test_an_array_that_is_no_surface(refused, case_text, tmp_path, name, content, remedy):
-    np.save(tmp_path / name, content)
-    edge = "4 um" if name == "small.npy" else "45 um"
-    line = f'file = "{name}"\nsize = ["{edge}", "{edge}"]'
-    (tmp_path / "case.toml").write_text(measured(case_text, line))
-    assert remedy in refused("run", tmp_path / "case.toml", "-o", tmp_path / "out")
-
-
-@pytest.mark.parametrize("name", ["x" * 300 + ".npy", "a\\u0000b.npy"])
-def test_a_name_that_no_file_has(refused, case_text, tmp_path, name):
-    line = f'file = "{name}"\nsize = "45 um"'
-    (tmp_path / "case.toml").write_text(measured(case_text, line))
-    assert "check the path" in refused("check", tmp_path / "case.toml")
-
-
-def test_a_ragged_text_matrix(refused, case_text, tmp_path):
-    (tmp_path / "ragged.csv").write_text("0,0,0\n0,0\n")
-    line = 'file = "ragged.csv"\nsize = "45 um"'
-    (tmp_path / "case.toml").write_text(measured(case_text, line))
-    assert "ragged.csv" in refused("surface", tmp_path / "case.toml", "-o", tmp_path / "out")
-
-
-class Bomb:
-    """Leaves a mark when unpickled."""
-
-    def __init__(self, mark):
-        self.mark = mark
-
-    def __reduce__(self):
-        return os.mkdir, (str(self.mark),)
-
-
-def test_a_pickled_array_is_refused_and_nothing_in_it_runs(refused, case_text, tmp_path):
-    np.save(tmp_path / "bomb.npy", np.array([Bomb(tmp_path / "mark")], dtype=object))
-    (tmp_path / "raw.npy").write_bytes(pickle.dumps(Bomb(tmp_path / "mark")))
-    for name in ("bomb.npy", "raw.npy"):
-        line = f'file = "{name}"\nsize = "45 um"'
-        (tmp_path / "case.toml").write_text(measured(case_text, line))
-        assert name in refused("run", tmp_path / "case.toml", "-o", tmp_path / "out")
-    assert not (tmp_path / "mark").exists()
-
-
-def test_a_damaged_array(refused, case_text, tmp_path):
-    np.save(tmp_path / "whole.npy", np.zeros((90, 90)))
-    (tmp_path / "cut.npy").write_bytes((tmp_path / "whole.npy").read_bytes()[:5000])
-    (tmp_path / "case.toml").write_text(measured(case_text, 'file = "cut.npy"\nsize = "45 um"'))
-    assert "cut.npy" in refused("run", tmp_path / "case.toml", "-o", tmp_path / "out")
-
-
-def test_a_measured_file_is_relative_to_the_case(cli, case_text, tmp_path, monkeypatch):
-    (tmp_path / "data").mkdir()
-    np.save(tmp_path / "data" / "flat.npy", np.zeros((90, 90)))
-    text = measured(case_text, 'file = "flat.npy"\nsize = ["45 um", "54 um"]')
-    (tmp_path / "data" / "case.toml").write_text(text)
-    monkeypatch.chdir(tmp_path)
-    assert cli("check", "data/case.toml")[0] == 0
 
 
 def test_results_are_never_overwritten(refused, case_text, tmp_path):

@@ -151,9 +151,8 @@ def _check_points(measured: Measured, parameters: int) -> None:
 
 
 def _deviations(model: CaseModel, x: Array, velocity: Array) -> Deviations:
-    """Compute by how much COR may deviate from the mean over the surfaces, for each cause.
+    """Compute the deviations of COR from the curve with the parameters `x`, for each cause.
 
-    COR is computed with the parameters `x`.
     The field `random` contains the error of the solver, but not the noise of the measurements.
     """
     here = model.at(x)

@@ -92,15 +92,24 @@ class Pair:
             (1 - body.poissons_ratio**2) / body.youngs_modulus for body in (self.first, self.second)
         )
 
-    @property
-    def yield_coefficient(self) -> float:
-        """`theory.yield_coefficient` at the mean Poisson's ratio of the bodies (dimensionless).
+    def first_yield_pressure(self, yield_pressure: float, yield_strength: float) -> float:
+        """Largest pressure (Pa) at which the smooth bodies stay elastic.
 
-        Smooth bodies begin to yield when the largest pressure is this number times the yield
-        strength.
+        Args:
+            yield_pressure: Constant limit of the contact pressure (Pa); inf if not used.
+            yield_strength: Yield strength of the softer body (Pa); inf if not used.
+
+        Returns:
+            The yield pressure (Pa) or, with a yield strength, this strength times the
+            `theory.yield_coefficient` at the mean Poisson's ratio of the bodies.
+
+        Source:
+            R. L. Jackson, I. Green, J. Tribology 127 (2005) 343–354.
         """
+        if math.isinf(yield_strength):
+            return yield_pressure
         nu = 0.5 * (self.first.poissons_ratio + self.second.poissons_ratio)
-        return float(yield_coefficient(nu))
+        return float(yield_coefficient(nu)) * yield_strength
 
     @property
     def tangential_modulus(self) -> float:

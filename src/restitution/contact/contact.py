@@ -200,12 +200,8 @@ class Contact:
 
     @property
     def first_yield_pressure(self) -> float:
-        """Largest pressure at which smooth bodies stay elastic (Pa); inf for elastic bodies.
-
-        It is the yield pressure or, for `expanding-cavity`, the yield strength times
-        `Pair.yield_coefficient`.
-        """
-        return min(self.yield_pressure, self.pair.yield_coefficient * self.yield_strength)
+        """Largest pressure at which smooth bodies stay elastic (Pa); inf for elastic bodies."""
+        return self.pair.first_yield_pressure(self.yield_pressure, self.yield_strength)
 
     @property
     def hardening_modulus(self) -> float:

@@ -97,7 +97,7 @@ class Bodies:
             E=pair.contact_modulus,
             m=pair.mass,
             p_y=yielding.hardness,
-            onset=min(yielding.yield_pressure, pair.yield_coefficient * yielding.yield_strength),
+            onset=pair.first_yield_pressure(yielding.yield_pressure, yielding.yield_strength),
             w=case.interface.adhesive_energy,
             wall=wall,
             equal=pair.first == pair.second and Y_1 == Y_2,
