@@ -174,7 +174,7 @@ def test_a_scan_may_be_refined_on_its_own_pixels(surface, scan):
         (
             'crop = { x = ["20 um", "30 um"] }',
             "",
-            "roughness.crop.x: no pixel of the scan lies between 20 and 30 um; choose a range",
+            "roughness.crop.x: the range from 20 to 30 um extends beyond the scan",
         ),
         (
             'extend = "twin"\nseed = 1',
@@ -218,3 +218,24 @@ def test_several_surfaces_need_a_grid_and_one_number_of_realisations(refused, ca
         file.read_text().replace("[first]", "roughness = 3\n[first]", 1).split("[rough")[0]
     )
     assert "roughness: 3 should be a table" in refused("check", file)
+
+
+def test_a_wrong_key_of_the_second_surface_is_named_with_its_number(refused, case):
+    table = '[[roughness]]\nkind = "gaussian"\nrms = "{}"\nseed = 1\ncorrelation_length = "{}"\n'
+    good = table.format("30 nm", "2 um")
+    for wrong, words in (
+        (table.format("30", "2 um"), "roughness[2].rms: "),
+        (table.format("30 nm", "20 um"), "table 2 of [[roughness]]: roughness.correlation_length"),
+    ):
+        assert words in refused("check", case(tables=good + wrong + GRID.format(nodes=96)))
+
+
+@pytest.mark.parametrize(("nodes", "mirrored"), [(20, None), (96, "covers 30% of the grid")])
+def test_the_mirror_image_at_a_place_near_an_edge_is_noted(surface, nodes, mirrored):
+    """The middle of the grid is 2 and 27 of 96 pixels away from the middle of the scan."""
+    found, printed = surface("place = 4", GRID.format(nodes=nodes))
+    notice = found["provenance"].get("notice")
+    assert (notice is None) == (mirrored is None)
+    if mirrored:
+        assert mirrored in notice
+        assert mirrored in " ".join(printed.split())

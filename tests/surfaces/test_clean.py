@@ -24,9 +24,19 @@ def test_without_ranges_everything_stays():
     assert np.array_equal(crop(ROUGH).height, ROUGH.height)
 
 
-def test_a_range_without_pixels_names_the_scan_s():
-    with pytest.raises(SurfaceError, match=r"^y: .* between 20 and 30 um; .* -8 and 7.8 um$"):
-        crop(ROUGH, y=(20e-6, 30e-6))
+@pytest.mark.parametrize("y", [(20e-6, 30e-6), (0.0, 8.5e-6), (-8.5e-6, 0.0)])
+def test_a_range_beyond_the_scan_is_refused(y):
+    with pytest.raises(SurfaceError, match=r"^y: .* beyond the scan, .* from -8 to 7.8 um \("):
+        crop(ROUGH, y=y)
+
+
+def test_a_range_to_the_edges_keeps_all_pixels():
+    assert crop(ROUGH, x=(-4.8e-6, 4.8e-6), y=(-8e-6, 8e-6)).grid == GRID
+
+
+def test_a_range_between_two_pixels_is_refused():
+    with pytest.raises(SurfaceError, match=r"^x: no pixel lies from 0.01 to 0.02 um; .* 0.1 um"):
+        crop(ROUGH, x=(0.01e-6, 0.02e-6))
 
 
 def test_spikes_are_removed_and_nothing_else_changes():

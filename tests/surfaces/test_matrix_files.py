@@ -303,7 +303,7 @@ def test_missing_size_is_asked_for(refusal, tmp_path):
 
 @pytest.mark.parametrize("size", [(0.0, 1e-5), (1e-5, -1e-5), (np.nan, 1e-5), (1e-5, np.inf)])
 def test_sizes_that_are_no_lengths(tmp_path, size):
-    with pytest.raises(SurfaceError, match=r"^size: .* are not two positive lengths; "):
+    with pytest.raises(SurfaceError, match=r"^size: .* m are not two positive lengths; "):
         read_surface(save(tmp_path / "ramp.npy", RAMP), size=size)
 
 

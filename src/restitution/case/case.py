@@ -16,7 +16,7 @@ from restitution.case.schema import GridTable, ImpactTable, Series, Table, Unloa
 from restitution.contact.bodies import Pair
 from restitution.contact.cohesive import coarsest_spacing
 from restitution.contact.contact import Adhesion, Contact, smooth
-from restitution.errors import CaseError
+from restitution.errors import CaseError, SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface, composite
 from restitution.surfaces.refine import divided
@@ -260,7 +260,15 @@ class Case(Table):
             return scan.surface(None, folder, factor)
         if not self.roughness:
             return smooth(divided(grid, factor))
-        return composite([part.surface(grid, folder, factor) for part in self.roughness])
+        parts = []
+        for number, part in enumerate(self.roughness, 1):
+            try:
+                parts.append(part.surface(grid, folder, factor))
+            except SurfaceError as error:
+                if len(self.roughness) == 1:
+                    raise
+                raise SurfaceError(f"table {number} of [[roughness]]: {error}") from error
+        return composite(parts)
 
     def contact(self, folder: Path) -> Contact:
         """Make the unloaded contact of the case; file names are relative to `folder`.

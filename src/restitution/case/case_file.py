@@ -174,7 +174,12 @@ def _keys(problem: Any) -> list[str]:
 
 
 def _key_of(problem: Any) -> str:
-    return ".".join(shown(key)[1:-1] for key in _keys(problem))
+    """The dotted key; "roughness[2]" is the second table [[roughness]]."""
+    names = [shown(key)[1:-1] for key in _keys(problem)]
+    number = problem["loc"][1] if names[:1] == ["roughness"] and len(problem["loc"]) > 1 else 0
+    if isinstance(number, int) and number > 0:
+        names[0] = f"roughness[{number + 1}]"
+    return ".".join(names)
 
 
 def _in_words(problem: Any, root: type[Table]) -> str:

@@ -31,7 +31,7 @@ from restitution.surfaces.extend import Extension
 from restitution.surfaces.generate import RoughnessKind
 from restitution.surfaces.refine import divided
 from restitution.surfaces.refused import Code, RefusedSurfaceError
-from restitution.surfaces.shift import place_of
+from restitution.surfaces.shift import note_mirrored_part, place_of
 from restitution.surfaces.twin import LEAST_PIXELS
 
 MOST_REALISATIONS = 1000
@@ -220,6 +220,7 @@ class MeasuredRoughness(Table):
             steps = self._steps_to_pixel(grid, scan.grid, factor)
             fine = divided(grid, steps)
             placed = extend(scan, fine, self.extend) if self.extend else place_on_grid(scan, fine)
+            placed = note_mirrored_part(placed)
         if factor == 1:
             return placed
         finer = refine(placed, factor // steps)

@@ -18,7 +18,7 @@ def surface(
 
     from restitution.case import needs
     from restitution.case.case_file import naming, read_case
-    from restitution.cli.console import answers, command, errors, say, say_next, say_written
+    from restitution.cli.console import answers, command, errors, say, say_next, say_written, warn
     from restitution.pages.surface import write_surface_page
     from restitution.plots.static import write_figure
     from restitution.plots.surface import surface_map
@@ -60,6 +60,8 @@ def surface(
         if key.endswith("subtracted_radius_m"):
             file = provenance[key.replace("subtracted_radius_m", "file")]
             say(_curvature(str(file), float(radius)))
+    if "notice" in provenance:
+        warn(str(provenance["notice"]))
     say_written(out, ["surface.nc", "statistics.json", picture.name, "surface.html"])
     say_next(command("run", case, "-o", "OUT"))
 

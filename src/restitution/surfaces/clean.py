@@ -28,23 +28,34 @@ def crop(surface: Surface, *, x: Range | None = None, y: Range | None = None) ->
 
     Args:
         surface: Surface to crop.
-        x: Lowest and highest x (m); None keeps the whole range.
-        y: Lowest and highest y (m); None keeps the whole range.
+        x: Lowest and highest x (m), within the scan; None keeps the whole range.
+        y: Lowest and highest y (m), within the scan; None keeps the whole range.
 
     Returns:
         Surface of the remaining pixels.
 
     Raises:
-        SurfaceError: No pixel lies within a range.
+        SurfaceError: A range extends beyond the scan, or no pixel lies within it.
     """
     part = []
-    for name, within, centres in (("x", x, surface.grid.x), ("y", y, surface.grid.y)):
-        low, high = within or (-math.inf, math.inf)
+    for name, within, centres, h in (
+        ("x", x, surface.grid.x, surface.grid.spacing[0]),
+        ("y", y, surface.grid.y, surface.grid.spacing[1]),
+    ):
+        low, high = within or (centres[0], centres[-1])
+        # Half a pixel lies beyond each outermost centre. Half a pixel more is tolerated, because
+        # zero is at the centre of a pixel: if the number of pixels is even, zero is half a pixel
+        # away from the middle of the scan.
+        if low < centres[0] - h or high > centres[-1] + h:
+            raise SurfaceError(
+                f"{name}: the range from {_um(low, high)} extends beyond the scan, whose pixels "
+                f"lie from {_um(centres[0], centres[-1])} ({name} is zero in the middle)"
+            )
         inside = np.flatnonzero((low <= centres) & (centres <= high))
         if inside.size == 0:
             raise SurfaceError(
-                f"{name}: no pixel of the scan lies between {_um(low, high)}; choose "
-                f"a range between {_um(centres[0], centres[-1])}"
+                f"{name}: no pixel lies from {_um(low, high)}; choose a wider range, because the "
+                f"pixels are {1e6 * h:.4g} um apart"
             )
         part.append(inside)
     grid = Grid((part[0].size, part[1].size), surface.grid.spacing)
@@ -113,4 +124,4 @@ def remove_outliers(surface: Surface, threshold: float) -> Surface:
 
 
 def _um(low: float, high: float) -> str:
-    return f"{1e6 * low:.4g} and {1e6 * high:.4g} um"
+    return f"{1e6 * low:.4g} to {1e6 * high:.4g} um"

@@ -78,8 +78,8 @@ def read_surface(
         raise SurfaceError(f"undefined={undefined!r} is unknown; choose 'error' or 'interpolate'")
     if size is not None and not all(math.isfinite(side) and side > 0 for side in size):
         raise SurfaceError(
-            f"size: {_text(size)} um are not two positive lengths; give the edge lengths of the "
-            "scan in m"
+            f"size: {size[0]:g} x {size[1]:g} m are not two positive lengths; give the edge "
+            "lengths of the scan in m"
         )
     file = Path(path)
     _check_readable(file)

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from restitution.surfaces.surface import Surface, is_periodic
+from restitution.surfaces.surface import Surface
 
 # Steps along x and y of an additive recurrence with low discrepancy: for any N, its first N points
 # fill a square evenly. The steps are 1/ρ and 1/ρ², where ρ is the plastic number (ρ³ = ρ + 1).
@@ -18,8 +18,7 @@ def place_of(surface: Surface, number: int) -> Surface:
     """Move `surface` so that point `number` of a fixed sequence is in the middle.
 
     Point 0 is the middle itself. For any N, the first N points of the sequence fill the surface
-    evenly. A periodic surface is continued periodically beyond its edges, and any other surface by
-    its mirror image.
+    evenly. Beyond its edges, the surface is continued by its mirror image.
     """
     if number == 0:
         return surface
@@ -30,8 +29,29 @@ def place_of(surface: Surface, number: int) -> Surface:
     height = surface.height
     for cell in cells:
         n = height.shape[0]
-        period = height if is_periodic(surface) else np.concatenate([height, height[::-1]])
-        height = np.roll(period, -cell, axis=0)[:n].T
+        height = np.roll(np.concatenate([height, height[::-1]]), -cell, axis=0)[:n].T
     x, y = (cell * h for cell, h in zip(cells, surface.grid.spacing, strict=True))
     moved = {"place": number, "place_x_m": float(x), "place_y_m": float(y)}
     return replace(surface, height=height, provenance={**surface.provenance, **moved})
+
+
+def note_mirrored_part(surface: Surface) -> Surface:
+    """Add a `notice` if part of `surface` is the mirror image of a moved scan.
+
+    `surface` is a scan that `place_of` moved and that was then placed on a grid.
+    """
+    origin = surface.provenance
+    if not origin.get("place") or "notice" in origin:
+        return surface
+    measured = 1.0
+    for axis, edge in zip("xy", surface.grid.size, strict=True):
+        scan, moved = float(origin[f"size_{axis}_m"]), abs(float(origin[f"place_{axis}_m"]))
+        measured *= min(1.0, (0.5 * scan - moved) / edge + 0.5)
+    if measured > 1 - 1e-6:
+        return surface
+    notice = (
+        f"{origin.get('file', 'the scan')}: place {origin['place']} is near an edge of the scan, "
+        f"so the mirror image of the scan covers {1 - measured:.0%} of the grid; a smaller grid "
+        "avoids this"
+    )
+    return replace(surface, provenance={**origin, "notice": notice})
