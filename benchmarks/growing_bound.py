@@ -47,10 +47,10 @@ Two steel spheres (R* = 250 µm, E* = 112 GPa) on {nodes}² nodes of 0.25 µm ar
 from 2 nm to 5 µm, as in `benchmarks/steel.toml`. The page compares two upper bounds of the contact
 pressure: a constant bound of 750 MPa, and a bound that grows with deformation, for the yield
 strength Y = 268 MPa. The times are CPU times of one thread, because other programs on the machine
-affect them less than the elapsed times. They do not include the time to generate the surface. The
-curves with both bounds are computed {repeats} times in turn. Each ratio is the time with the bound
-that grows divided by the time with the constant bound. The table shows the median of the repeats
-(smallest and largest in brackets).
+affect them less than the elapsed times. They do not include the time to generate the surface. Each
+curve is computed {repeats} times with each bound, alternately. Each ratio is the time with the
+bound that grows divided by the time with the constant bound. The table shows the median of the
+repeats (smallest and largest in brackets).
 
 | surface | curve | constant bound, s | bound that grows, s | ratio |
 |---|---|---|---|---|

@@ -55,12 +55,11 @@ conditions hold to {residual} δ, and the relative error of the force is below 1
 indentation at the prescribed pressure. Both requirements are checked from the computed pressures
 alone, by code that none of the programs use. In the table, "residual" is the largest violation of
 the contact conditions divided by δ. "force" is the relative difference between the computed and the
-prescribed force, and "nodes" is the number of nodes in contact minus the number found by
-`restitution`. `restitution` always meets the prescribed pressure to 1e-8, so it solves the contact
-more accurately than its tolerance demands. It therefore meets both requirements at a loose
-tolerance (column "own tolerance"). The programs take turns {rounds} times, in an order that is
-reversed each time; ratios are medians (smallest–largest). [Beside other programs](peers.md) states
-what a time includes.
+prescribed force. "nodes" is the number of nodes in contact minus the number found by `restitution`.
+`restitution` always meets the prescribed pressure to 1e-8. It therefore solves the contact more
+accurately than its tolerance demands, and a loose tolerance suffices (column "own tolerance"). The
+programs take turns {rounds} times, in an order that is reversed each time; ratios are medians
+(smallest–largest). [Beside other programs](peers.md) states what a time includes.
 
 Tamaas solves elastic contact by `PolonskyKeerRey` and plastic contact by `KatoSaturated`.
 ContactMechanics solves them by `minimize_proxy` with `external_force`. A program that needs more

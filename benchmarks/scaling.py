@@ -50,11 +50,11 @@ in a process of its own.
 * time: the median time of {fewest} to {most} solutions, including the set-up and the computation of
   the kernel.
 * U: the time divided by that of one zero-padded convolution (forward and inverse) on the whole grid
-  with scipy.fft, two workers and float64, measured just before.
+  with scipy.fft, two workers and float64. The convolution is timed just before the solution.
 * least: the shortest time of these solutions.
 * first: the time of the first solution in the process. During this solution the process accesses
   its memory for the first time. This machine is virtual, and its host reclaims idle memory. On such
-  a machine the first access may cost any program 1 to 2 s per GiB.
+  a machine the first access can take any program 1 to 2 s per GiB.
 * memory: the peak memory of the process, including Python and the surface, in GiB.
 * arrays per node: the peak memory, divided by the memory of one float64 array of the whole grid.
 

@@ -19,11 +19,11 @@ from restitution.contact.state import State
 from restitution.display import quantity, summary_html, summary_text
 
 UnloadingMethod = Literal["path", "energy-estimate"]
-# Error of the unloading work that each detachment criterion causes on a grid, divided by w times
-# the contact area, where w is the work of adhesion. Smaller unloading steps do not reduce this
-# error. With `crack-closure`, nodes detach at an energy release rate of 0.985 to 0.99 w. With
-# `pohrt-popov`, nodes at a kink of the contact edge detach at 1.0 w, and nodes on a straight edge
-# at 1.8 w. The value 0.4 is midway between the errors 0 and 0.8 at these two rates.
+# Error of the unloading work that each detachment criterion causes on a grid, as a fraction of the
+# work of adhesion w times the contact area. Smaller unloading steps do not reduce this error.
+# `crack-closure` detaches nodes at an energy release rate of 0.985 to 0.99 w. `pohrt-popov`
+# detaches nodes at 1.0 w where the contact edge has a kink, and at 1.8 w where it is straight.
+# These rates are too large by 0 and by 0.8 w; the error of this criterion is midway, 0.4.
 _RELEASE_ERROR = {"crack-closure": 0.015, "pohrt-popov": 0.4}
 
 
@@ -83,8 +83,8 @@ class Collision:
         """Impact velocity V (m/s) whose kinetic energy ½ m* V² is the work of loading.
 
         None if a density is missing, because the reduced mass m* is then unknown. Also None if the
-        work of loading is negative. At any impact velocity, adhesion then pulls the bodies deeper
-        than the deepest point of this collision.
+        work of loading is negative. Adhesion then pulls the bodies to a larger depth than that of
+        this collision, at any impact velocity.
         """
         if self.mass is None or self.loading_work < 0:
             return None
@@ -120,13 +120,13 @@ def collide(
     Without adhesion, the work of unloading W_u is the stored energy, and `method` has no effect.
     With adhesion, `method="path"` simulates unloading, and `method="energy-estimate"` estimates the
     work of unloading as W_u = E_el − wA. Here E_el is the elastic energy, w the work of adhesion
-    and A the contact area. For cohesive contacts, the estimate contains the computed interaction
-    energy in place of −wA.
+    and A the contact area. For cohesive contacts, which model an attraction of finite range, the
+    computed energy of this attraction replaces −wA.
 
     With the estimate, the pull-off force and the indentation at separation are NaN. The estimate
-    neglects the energy dissipated at detachment. Therefore, the error of W_u is set to wA. In all
-    comparisons with simulated unloading, wA exceeded the sum of the dissipated energy and its grid
-    error.
+    neglects the energy dissipated at detachment, so the error of W_u is set to wA. In all
+    comparisons with simulated unloading, wA was larger than the dissipated energy plus the error of
+    this energy due to the grid.
 
     Args:
         state: Deepest state of the collision, reached by loading.
@@ -182,6 +182,5 @@ def collide(
 def _restitution(unloading_work: float, loading_work: float) -> float:
     if unloading_work <= 0 or loading_work <= 0:
         return 0.0
-    # Only numerical errors can make the work of unloading exceed the work of loading. These errors
-    # are contained in restitution_error.
+    # The ratio exceeds 1 only because of numerical errors, which restitution_error includes.
     return min(1.0, math.sqrt(unloading_work / loading_work))

@@ -141,7 +141,7 @@ def test_an_unresolved_velocity_is_warned_of(stored, law, cli, tmp_path):
     points = tuple(point.model_copy(update={"resolved": False}) for point in law().points)
     folder = stored("coarse", points=points)
     _, _, said = cli("export", folder, "--to", "edem", "--velocity", "1 m/s", "-o", tmp_path / "e")
-    assert "the grid does not resolve COR at 1 m/s" in said
+    assert "the grid does not resolve the contact at 1 m/s" in said
 
 
 def test_the_contact_time_is_that_of_a_hertzian_impact(law):

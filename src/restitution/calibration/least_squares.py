@@ -18,8 +18,8 @@ RANGE = 30.0  # the search covers values from 1/30 to 30 times the first guess
 # allow a smaller step. But over changes of a parameter by about 1 %, the COR of shallow contacts is
 # not smooth, because nodes begin to yield one at a time.
 _STEP = 0.03
-# Number of scanned points besides the first guess, and number of searches that start from the best
-# of these points.
+# `search_widely` computes the sum of squares at `_SCANNED` points. It then starts searches from the
+# first guess and from the best `_STARTS` of these points.
 _SCANNED, _STARTS = 15, 2
 # Two minima count as different if the logarithm of a parameter differs by more than this value.
 DISTANCE = math.log(1.5)
@@ -63,8 +63,8 @@ def jacobian(
 ) -> Array:
     """∂COR/∂x at `velocity` (m/s), shape (velocities, parameters), by finite differences.
 
-    The differences are `central` or one-sided. If the case cannot be solved on one side, only the
-    other side is used. If it cannot be solved on either side, the derivative is set to 0.
+    The differences are one-sided if `central` is false. If the case cannot be solved on one side,
+    only the other side is used. If it cannot be solved on either side, the derivative is set to 0.
     """
     here = model.restitution(x, velocity, cost)
     columns = []

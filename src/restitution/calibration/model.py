@@ -1,10 +1,10 @@
 """COR of a case over a range of impact velocities, as a function of the free parameters.
 
-A curve is COR of one surface against impact velocity. It is computed at depths that form a
-geometric sequence. The impact velocities of these depths cover the range. Between the depths the
-ratio W_u/W_l of unloading work to loading work is interpolated (`RatioCurve`). Without adhesion,
-all curves of a surface at the same `Cost` use depths of one sequence. The interpolated COR is then
-a smooth function of the parameters.
+A curve is COR of one surface against impact velocity. The contact is computed at depths (maximum
+indentations) that form a geometric sequence. The impact velocities of these depths cover the range.
+Between the depths, the ratio W_u/W_l of unloading work to loading work is interpolated
+(`RatioCurve`). Without adhesion, the depths of a surface (at the same `Cost`) do not shift when the
+parameters change. The interpolated COR is then a smooth function of the parameters.
 """
 
 from __future__ import annotations
@@ -91,14 +91,15 @@ class Mean:
         return np.asarray(np.mean([each.restitution(velocity) for each in self.curves], axis=0))
 
     def error(self, velocity: Array, name: Literal["solver_error", "model_error"]) -> Array:
-        """Solver error or model error of COR at `velocity` (m/s): the largest of all surfaces."""
+        """Largest solver error or model error of COR at `velocity` (m/s) of all surfaces."""
         errors = [each.interpolated(name, velocity) for each in self.curves]
         return np.asarray(np.max(errors, axis=0))
 
     def resolved_at(self, velocity: Array) -> NDArray[np.bool_]:
-        """Whether the grid resolves the two computed contacts that enclose `velocity` (m/s).
+        """Whether the grid resolves the computed contacts next to `velocity` (m/s).
 
-        True only if the grid resolves both contacts for every surface.
+        These are the contacts at the next lower and the next higher computed velocity. The result
+        is true only if the grid resolves both contacts for every surface.
         """
         resolved = [each.interpolated("resolved", velocity) for each in self.curves]
         return np.asarray(np.min(resolved, axis=0) > 1 - 1e-9)
@@ -109,10 +110,10 @@ def curve_of(
 ) -> tuple[Curve, float]:
     """Compute the curve of `contact` from velocity `low` to at least `high` (m/s).
 
-    Returns the curve and its first depth (m). `near` (m) is the first depth that this function
-    returned for the same surface with other parameters. If `near` is given, each depth is `near`
-    times a power of `_RATIO`. `near` is ignored for adhesive contacts and if `low` equals `high`.
-    Raises the errors of `solve` and `solve_at_velocity`.
+    Returns the curve and its first depth (m). `near` (m), if given, is the first depth of an
+    earlier curve of the same surface with other parameters. Each depth is then `near` times a power
+    of `_RATIO`, so both curves use depths of one geometric sequence. `near` is ignored for adhesive
+    contacts and if `low` equals `high`. Raises the errors of `solve` and `solve_at_velocity`.
     """
     with naming_keys("impact"):
         if math.isnan(near) or contact.adhesive or low == high:
@@ -139,7 +140,7 @@ def _row(state: State, unloading: UnloadingTable) -> tuple[float, ...]:
     """Return the values of a `Curve` at one depth, and the depth.
 
     The values are the impact velocity (m/s), W_u/W_l, the solver error and the model error of COR,
-    whether the grid resolves the contact, and the depth (m).
+    a flag that is true if the grid resolves the contact, and the depth (m).
     """
     collision = collide(state, method=unloading.method, tolerance=unloading.restitution_error)
     fine = adhesive_nodes(state) >= ADHESIVE_NODES
@@ -155,12 +156,12 @@ def _row(state: State, unloading: UnloadingTable) -> tuple[float, ...]:
 
 @dataclass
 class CaseModel:
-    """COR of the case with tables `content`, from velocity `low` to `high` (m/s).
+    """COR of a case from velocity `low` to `high` (m/s), as a function of the free `parameters`.
 
-    COR is a function of x, which holds ln(value/first guess) of each of the free `parameters`. COR
-    is the mean over several random surfaces with the statistics of the case, because a single
-    random surface does not reproduce the measured surface. File names in the case are relative to
-    `folder`.
+    `content` holds the tables of the case file. File names in it are relative to `folder`. The
+    argument x of the methods holds ln(value/first guess) of each parameter. COR is the mean over
+    several random surfaces, because no single random surface equals the measured surface. All
+    these surfaces have the statistics that the case gives.
     """
 
     content: Mapping[str, Any]
@@ -212,9 +213,10 @@ class CaseModel:
 
     @property
     def surfaces(self) -> int:
-        """Number of surfaces: the realisations of the case if there are several, else `SURFACES`.
+        """Number of surfaces over which COR is averaged.
 
-        A case without roughness has one surface.
+        It is the number of realisations of the case, or `SURFACES` if the case has only one
+        realisation. A case without roughness has one surface.
         """
         case = self.case(np.zeros(len(self.parameters)))
         if not case.roughness:

@@ -62,8 +62,8 @@ def with_factors(
 def free_parameters(content: Mapping[str, Any], names: Sequence[str]) -> tuple[Parameter, ...]:
     """Find the parameters with these `names`.
 
-    A name is a whole key, or the last part of a key if no other key of the case ends with it.
-    Raises `CaseError` for a name that is not the key of a positive value in the case.
+    A name is a whole key ("roughness.rms") or its last part ("rms"), if no other key has this last
+    part. Raises `CaseError` for any other name, and for a value that is not a positive quantity.
     """
     values = dict(_values(content))
     keys = [_key(name, values) for name in names]
@@ -93,7 +93,8 @@ def _values(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, A
 def _key(name: str, values: Mapping[str, Any]) -> str:
     """Find the key of the case file that `name` means.
 
-    `name` is a whole key, or its last part if no other key ends with it. Raises `CaseError`.
+    `name` is a whole key ("roughness.rms") or its last part ("rms"). Raises `CaseError` if there is
+    no such key, or more than one.
     """
     found = [key for key in values if name in (key, key.rpartition(".")[2])]
     if len(found) > 1:
@@ -121,7 +122,7 @@ def _parameter(key: str, written: Any) -> Parameter:
 
 
 def _reason(key: str, written: Any) -> str | None:
-    """State why the value of `key` cannot be free; None if it can."""
+    """Return the reason why `key` cannot be a free parameter, or None if it can be free."""
     table, _, last = key.partition(".")
     if table not in _TABLES or _CHOICES & set(last.split(".")):
         return f"cannot be free; only values of {', '.join(f'[{name}]' for name in _TABLES)} can"

@@ -1,19 +1,20 @@
 """Uncertainty of fitted parameters: covariance, intervals, and combinations.
 
 Here, the parameters x are logarithms: ln(value/first guess). J = ∂COR/∂x is the Jacobian, and σ are
-the standard deviations that weight the points. A = J/σ is the scaled Jacobian. A deviation ΔCOR of
-data or model changes the parameters by P ΔCOR, where P = (AᵀA)⁻¹Aᵀ/σ is the pseudo-inverse of A
-divided by σ. Three kinds of deviations contribute to the covariance C of the parameters:
+the standard deviations that weight the points. A = J/σ is the scaled Jacobian. If the measured or
+the computed COR deviates by ΔCOR, the fitted parameters deviate by P ΔCOR. Here P = (AᵀA)⁻¹Aᵀ/σ is
+the pseudo-inverse of A divided by σ. Three kinds of deviations contribute to the covariance C of
+the parameters:
 
     C = P diag(s²) Pᵀ + 2 S/n + (P Δ_grid)(P Δ_grid)ᵀ,  S = Σ (P Δ)(P Δ)ᵀ/(n − 1).
 
 In the first term, s are the standard deviations of errors that are independent between points. In
-the second term, Δ is the difference of the COR of one computed surface from the mean COR of n
-computed surfaces, and S is the resulting covariance of the parameters for a single surface. The
-mean COR is fitted to the data. The measured COR is assumed to be a mean over n places of impact.
-Each of these two means contributes S/n. If all impacts hit the same place, the measured COR
-contributes S, so the second term is (1 + 1/n) S instead. In the third term, Δ_grid is the deviation
-due to the grid.
+the second term, Δ is the COR of one computed surface minus the mean COR of n computed surfaces. S
+is the resulting covariance of the parameters for a single surface. The computed mean COR is fitted
+to the measured COR, which is assumed to be a mean over n places of impact. The computed and the
+measured mean contribute S/n each. If all impacts hit the same place, the measured COR contributes
+S, so the second term is (1 + 1/n) S instead. In the third term, Δ_grid is the deviation of COR due
+to the grid.
 
 Intervals are computed with Student's t distribution, with the degrees of freedom according to Welch
 and Satterthwaite (Satterthwaite 1946).
@@ -31,8 +32,8 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 CONFIDENCE = 0.95
-# Lower bound that replaces smaller singular values of the scaled Jacobian A. A combination of
-# parameters with this singular value is known only within a factor of e^1000.
+# Singular values of the scaled Jacobian A below this value are replaced by this value. The data do
+# not determine the corresponding combinations of parameters: a factor of e^1000 remains possible.
 _LEAST = 1e-3
 # The interval of a parameter counts as infinite if the half-width of the interval of its logarithm
 # is at least this value.
@@ -43,9 +44,9 @@ _UNBOUNDED = math.log(1e6)
 class Deviations:
     """Deviations of COR from the fitted curve at the measured velocities, one field for each cause.
 
-    `random` are standard deviations of the points, shape (points,), estimated with `freedom`
-    degrees of freedom. `surfaces` are the differences of the COR of each surface from the mean over
-    the surfaces, shape (surfaces, points). `grid` is the change of COR if the cells are twice as
+    `random` are the standard deviations of COR at the points, shape (points,), estimated with
+    `freedom` degrees of freedom. `surfaces` is the COR of each surface minus the mean over the
+    surfaces, shape (surfaces, points). `grid` is the change of COR if the cells are twice as
     large as those of the case. It is None if the case cannot be solved on these cells. `model` is
     the model error of COR (`contact.model_error`), which does not contribute to the intervals.
     """
@@ -58,10 +59,10 @@ class Deviations:
 
     @property
     def by_surface(self) -> Array:
-        """The field `surfaces`, scaled for the difference between two means over n surfaces.
+        """The field `surfaces`, scaled to describe means over n surfaces, shape (surfaces, points).
 
-        The shape is (surfaces, points). The sum of the outer products of the rows is the covariance
-        of this difference. It is 2/n times the covariance of the COR of single surfaces.
+        The sum of the outer products of the rows is the covariance of the difference between two
+        means of COR, each over n surfaces. This covariance is 2/n times that of single surfaces.
         """
         n = len(self.surfaces)
         return self.surfaces * math.sqrt(2 / (n * max(n - 1, 1)))
@@ -75,7 +76,7 @@ class Deviations:
     def systematic(self) -> Array:
         """Standard deviations of COR due to `random`, `surfaces` and `grid` together.
 
-        They are purely systematic only if `random` does not contain the noise of measurements.
+        If `random` contains the noise of the measurements, the result contains it, too.
         """
         squares = self.random**2 + (self.by_surface**2).sum(axis=0) + self.by_grid**2
         return np.asarray(np.sqrt(squares))
@@ -118,9 +119,9 @@ class Uncertainty:
 
     @cached_property
     def _unknown(self) -> Array:
-        """Large covariance of the combinations of parameters that hardly change COR.
+        """Large covariance that is added for combinations of parameters that hardly change COR.
 
-        It is added because the data do not determine these combinations.
+        The data do not determine these combinations.
         """
         _, s, Vt = np.linalg.svd(self.scaled, full_matrices=False)
         lost = Vt[s < _LEAST]
@@ -173,14 +174,17 @@ class Uncertainty:
 
     @cached_property
     def by_model(self) -> Array:
-        """Change of the logarithm of each parameter if COR is off by the model error everywhere."""
+        """Change of the logarithm of each parameter due to the model error (absolute value).
+
+        COR is assumed to deviate by its full model error at every velocity.
+        """
         return np.asarray(np.abs(self.sensitivity @ self.deviations.model))
 
     @cached_property
     def by_one_place(self) -> Array:
         """Standard deviation of the logarithm of each parameter if all impacts hit one place.
 
-        Only the random surfaces contribute.
+        It includes only the differences between random surfaces, not noise or grid.
         """
         n = len(self.deviations.surfaces)
         return np.asarray(math.sqrt((n + 1) / 2) * self.deviation("surface"))

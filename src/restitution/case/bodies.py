@@ -45,8 +45,8 @@ _STRENGTHS = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*(?:\*\s*)?Y\s*")
 class BodyTable(Table):
     """The tables `[first]` and `[second]`.
 
-    The name of a library material can replace either table. It then means a flat wall of this
-    material, as in `second = "steel"`.
+    Instead of a table, the case file can name a library material, as in `second = "steel"`. The
+    body is then a flat wall of this material.
     """
 
     material: str | None = None
@@ -193,7 +193,7 @@ class InterfaceTable(Table):
 
     @property
     def needs_jkr(self) -> bool:
-        """Whether approach, detachment or plasticity has a value that needs `adhesion = "jkr"`."""
+        """Whether a value of another key, such as `approach`, needs `adhesion = "jkr"`."""
         return (
             self.approach != "equilibrium"
             or self.detachment != "crack-closure"
@@ -208,9 +208,10 @@ class InterfaceTable(Table):
     def yielding(self, first: BodyTable, second: BodyTable) -> Yielding:
         """Choose the yield model of the contact between two bodies; the softer body yields.
 
-        If the yield strength of this body is known, the limit of the contact pressure grows with
-        deformation by default. If only its hardness is known (as for glass), it yields at this
-        hardness. Raises `CaseError` if a value that the model needs is unknown.
+        Keys of the table [interface] have priority over the following defaults. If the yield
+        strength of the softer body is known, the limit of the contact pressure grows with
+        deformation. If only its hardness is known (as for glass), the body yields at this hardness.
+        Raises `CaseError` if a value that the model needs is unknown.
         """
         if self.yield_pressure is not None or self.plasticity in _CONSTANT_BOUND:
             return self._at_a_pressure(first, second)
@@ -232,7 +233,8 @@ class InterfaceTable(Table):
         )
         raise CaseError(
             f"interface.yield_strength: is missing, and {_named(name, body)} has no "
-            "yield_strength; give one of the two, or a yield_pressure"
+            "yield_strength; give one of these two strengths, or give yield_pressure instead of "
+            "plasticity and tangent_modulus"
         )
 
     def _growing(self, yield_strength: float, source: str) -> Yielding:
@@ -244,10 +246,11 @@ class InterfaceTable(Table):
         )
 
     def _at_a_pressure(self, first: BodyTable, second: BodyTable) -> Yielding:
-        """Make the model with a constant yield pressure, given or taken from the softer body.
+        """Make the model with a constant yield pressure.
 
-        The yield pressure of a body is a multiple of its yield strength Y, by default 2.8 Y. A body
-        whose Y is unknown yields at its hardness.
+        If the key `yield_pressure` is not a pressure, the yield pressure of the softer body is
+        used. It is a multiple of the yield strength Y of this body, by default 2.8 Y. A body whose
+        Y is unknown yields at its hardness.
         """
         model = self.plasticity or "equilibrium"
         if isinstance(self.yield_pressure, float):

@@ -21,8 +21,8 @@ from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface, composite
 from restitution.surfaces.refine import divided
 
-# Tables that can prescribe the depths. A depth is a state of loading. Its indentation, load, impact
-# velocity or nominal pressure is prescribed.
+# Tables that can prescribe the depths, which are states of loading. Each table prescribes one
+# quantity: indentation, load, impact velocity or nominal pressure.
 DEPTHS = ("indentation", "load", "impact", "pressure")
 
 
@@ -211,12 +211,15 @@ class Case(Table):
     def refined(self, factor: int | tuple[int, ...]) -> Case:
         """Return this case with cells `factor` times smaller than those of [grid].
 
-        A tuple contains a factor for each depth.
+        A tuple gives one factor for each depth (state of loading).
         """
         return self.model_copy(update={"grid": self.grid.model_copy(update={"refine": factor})})
 
     def factors(self) -> list[int]:
-        """Refinement factor of the grid at each depth, from the shallowest to the deepest."""
+        """Refinement factors of the grid, one for each depth (state of loading).
+
+        The shallowest depth comes first.
+        """
         if isinstance(self.grid.refine, tuple):
             return list(self.grid.refine)
         return [self.grid.factor] * len(self.depths())
@@ -256,7 +259,7 @@ class Case(Table):
         """Make the composite roughness on the grid; file names are relative to `folder`."""
         grid, factor = self.grid.grid(), self.grid.factor
         if grid is None:
-            (scan,) = cast(tuple[MeasuredRoughness], self.roughness)  # checked by _whole
+            (scan,) = cast(tuple[MeasuredRoughness], self.roughness)  # `_whole` requires one scan
             return scan.surface(None, folder, factor)
         if not self.roughness:
             return smooth(divided(grid, factor))
@@ -300,8 +303,9 @@ class Case(Table):
     def _adhesion_on(self, grid: Grid) -> Adhesion:
         """The model of adhesion on `grid`.
 
-        The default is "cohesive" if the cells are fine enough and the other keys of [interface]
-        allow it, and "jkr" otherwise.
+        With adhesion, the default for a periodic contact is "cohesive". For other contacts the
+        default is "cohesive" if the cells are fine enough and no other key of [interface] needs
+        "jkr". Otherwise it is "jkr".
         """
         interface = self.interface
         if interface.adhesion is not None:
@@ -321,11 +325,11 @@ class Case(Table):
 
     @property
     def prescribed(self) -> str:
-        """Name of the table that prescribes the depths."""
+        """Name of the table that prescribes the depths (states of loading)."""
         return next(name for name in DEPTHS if getattr(self, name) is not None)
 
     def depths(self) -> list[float]:
-        """The values that prescribe the depths (see `DEPTHS`), in increasing order.
+        """The values that prescribe the depths (states of loading), in increasing order.
 
         They are indentations (m), loads (N), impact velocities (m/s) or nominal pressures (Pa).
         """

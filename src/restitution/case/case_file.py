@@ -168,8 +168,8 @@ _WORDS = {
 
 
 def _keys(problem: Any) -> list[str]:
-    # The path of a pydantic error also contains tags of unions ("gaussian") and indices of lists.
-    # Leave them out, because they are not keys of the file.
+    # The path of a pydantic error also contains the kind of a roughness ("gaussian") and indices of
+    # lists. Leave them out, because they are not keys of the file.
     return [str(k) for k in problem["loc"] if isinstance(k, str) and k not in _KINDS]
 
 

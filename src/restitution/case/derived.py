@@ -35,10 +35,10 @@ def deepest_indentation(case: Case) -> float:
 def derived_quantities(case: Case, contact: Contact) -> dict[str, float | None]:
     """Return the quantities that `summary.json` lists as derived from the case.
 
-    They describe the pair, first yield and adhesion. They also show whether the grid suits the
-    contact radius that is predicted for smooth bodies. `_of_period` lists the quantities of a
-    periodic contact. The key of a quantity with a unit ends with its SI unit. A quantity that does
-    not apply to the case is None.
+    They describe the two bodies, first yield and adhesion. They also include the contact radius
+    predicted for smooth bodies, to be compared with the size of the grid and its cells. A quantity
+    that does not apply to the case is None. The key of a quantity with a unit ends with its SI
+    unit. `_of_period` lists the quantities of a periodic contact.
     """
     pair, p_y = contact.pair, contact.hardness
     if contact.periodic:

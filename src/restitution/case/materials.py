@@ -23,8 +23,9 @@ Text = Annotated[str, Field(min_length=1)]
 class Property(Table, Generic[Quantity]):
     """One quantity of a material, in SI units.
 
-    `low` and `high` are the lowest and the highest value among sources and grades. `verified` means
-    that `value` was read in the source or in a copy of it, or computed from values read there.
+    `low` and `high` are the lowest and the highest value found in the sources, for any grade of the
+    material. `verified` means that `value` was read in the source or in a copy of it, or computed
+    from values read there.
     """
 
     value: Quantity

@@ -20,19 +20,19 @@ _SURFACE = 75.0  # a generated surface
 _SKEWED = 115.0  # a generated surface with skewness or kurtosis
 _MARGIN = 60.0  # per node of the enlarged grid from which a non-periodic surface is cut
 _SCAN = 60.0  # per pixel, to read and level a scan and compute its spectrum
-_BAND = 90.0  # per node of the finest grid for adjusting the waves of a twin
+_BAND = 90.0  # per node of the finest grid on which the waves of a twin are adjusted
 _DESCRIBED = 150.0  # `restitution surface`: autocorrelation, spectrum and HTML page
 
-# Bytes per node for each model of plasticity and of adhesion. A run needs the larger of the values
-# for its two models. A run with an attraction of finite range ("cohesive") keeps the pressure and
-# the displacement of some 100 states of unloading (16 bytes per node and state), besides the arrays
-# of the solver.
+# Bytes per node for each model of plasticity and for each model of adhesion. A run has one model of
+# each, and needs the larger of the two values. Besides the arrays of the solver, a run with an
+# attraction of finite range ("cohesive") keeps some 100 states of unloading. The pressure and the
+# displacement of each state take 16 bytes per node.
 _PLASTICITY = {"none": 115.0, "equilibrium": 140.0, "expanding-cavity": 190.0, "truncated": 190.0}
 _ADHESION = {"none": 0.0, "jkr": 150.0, "cohesive": 1800.0}
 
 # A non-periodic surface is cut from a surface on an enlarged grid (`generate._enlarged`). The
 # number of nodes along each axis is at most doubled and then rounded up to a fast FFT length. The
-# enlarged grid therefore has at most about this many times the nodes of the grid.
+# enlarged grid therefore has at most about _ENLARGED times as many nodes as the surface.
 _ENLARGED = 4.0
 
 
@@ -64,7 +64,7 @@ def described_bytes(grid: Grid) -> float:
 
 
 def generated_bytes(grid: Grid, *, normal: bool, periodic: bool) -> float:
-    """Memory (bytes) of generating a surface on `grid`; `normal` means Gaussian heights."""
+    """Memory (bytes) for generating a surface on `grid`; `normal` means Gaussian heights."""
     per_node = _SURFACE if normal else _SKEWED
     if not periodic:
         per_node = max(per_node, _ENLARGED * (_MARGIN if normal else _SKEWED))
@@ -82,10 +82,11 @@ def measured_bytes(grid: Grid, scan: Grid, *, twin: bool) -> float:
 
 
 def _band_nodes(grid: Grid, scan: Grid) -> float:
-    """Upper estimate of the number of nodes of the finest grid on which a twin is adjusted.
+    """Number of nodes of the finest grid on which a twin is adjusted; an upper estimate.
 
-    The phases of the waves of a twin are adjusted on several grids (see `surfaces.twin`). `grid` is
-    the grid of the twin, and `scan` is the grid of the pixels of the scan.
+    A twin is a random surface with the statistics of a scan. Its waves are adjusted on several
+    grids (see `surfaces.twin`). `grid` is the grid of the twin, and `scan` is the grid of the
+    pixels of the scan.
     """
     repeats = [max(1.0, s / g) for s, g in zip(scan.size, grid.size, strict=True)]
     ratio = min(h / pixel for h, pixel in zip(grid.spacing, scan.spacing, strict=True))

@@ -10,9 +10,9 @@ from restitution.theory import JKR, Hertz
 
 # Typical work of adhesion (J/m²). Ghanbarzadeh et al. (2019) state a range of 0.01 to 0.09 J/m².
 TYPICAL_ADHESION = 0.05
-# Ratio of impact velocity V to sticking velocity V_s below which adhesion matters. Adhesion lowers
-# the square of COR by (V_s/V)² (Thornton and Ning 1998). At V = 8.5 V_s, it lowers a COR of 0.7 by
-# 0.01.
+# Adhesion matters if V/V_s is below this ratio. V is the impact velocity, and particles stick below
+# the velocity V_s. Adhesion lowers the square of COR by (V_s/V)² (Thornton and Ning 1998). At
+# V = 8.5 V_s, it lowers a COR of 0.7 by 0.01.
 _MATTERS = 8.5
 
 
@@ -43,7 +43,7 @@ def _no_adhesion(case: Case) -> str | None:
     if case.interface.work_of_adhesion is not None or pair.mass is None:
         return None
     smooth = JKR(pair.radius, pair.contact_modulus, TYPICAL_ADHESION)
-    # Rough bodies adhere less, so this velocity of smooth bodies is an upper bound.
+    # `below` holds for smooth bodies. Rough bodies adhere less, so for them it is an upper bound.
     below = _MATTERS * float(smooth.sticking_velocity(pair.mass))
     if _lowest_velocity(case, pair.mass) >= below:
         return None

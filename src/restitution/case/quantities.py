@@ -28,9 +28,10 @@ LONGEST = 100
 class _Quantity(NamedTuple):
     """A physical quantity of the case file.
 
-    `usual` lists the usual units, one of which is suggested if only the capitalisation of a unit is
-    wrong. `bounds` is the plausible range in SI units. A value outside this range almost certainly
-    has a wrong unit, and could make formulas overflow or underflow.
+    `usual` lists the usual units. If a unit differs from one of them only in capital letters, the
+    error message suggests the usual unit. `bounds` is the plausible range in SI units. A value
+    outside this range almost certainly has a wrong unit, and could make formulas overflow or
+    underflow.
     """
 
     name: str
@@ -63,7 +64,7 @@ def _registry() -> pint.UnitRegistry[float]:
 
 
 def unit_factors() -> dict[str, dict[str, float]]:
-    """For each SI unit, its usual units with their factors of conversion.
+    """Return the factors that convert the usual units to each SI unit.
 
     For example, `unit_factors()["m"]["um"]` is 1e-6.
     """
@@ -111,7 +112,7 @@ def scaled(value: str, factor: float, digits: int = 17) -> str:
 
 
 def _other_case(name: str, unit: str) -> str | None:
-    """Return advice if `name` differs from a usual unit only in upper and lower case ("gpa")."""
+    """Suggest a usual unit if `name` differs from it only in capital letters ("gpa")."""
     usual = _QUANTITIES[unit].usual.split()
     alike = (each for each in usual if each.lower() == name.lower() and each != name)
     return next((f"did you mean {each}?" for each in alike), None)

@@ -35,8 +35,8 @@ from restitution.surfaces.shift import note_mirrored_part, place_of
 from restitution.surfaces.twin import LEAST_PIXELS
 
 MOST_REALISATIONS = 1000
-# Largest `place`. `place` is the number of a point in a fixed sequence (see `surfaces.shift`). The
-# scan is moved so that this point is in the middle.
+# Largest value of the key `place`. It is the number of a point in a fixed sequence (see
+# `surfaces.shift`). The scan is moved so that this point is in the middle.
 MOST_PLACES = 10_000
 
 # Key of the case file for each argument of `crop` and `remove_outliers`.
@@ -111,7 +111,7 @@ class GeneratedRoughness(Table):
     periodic: bool = True
 
     def variant(self, number: int) -> Self:
-        """Return the table of one other surface, with `number` added to the seed."""
+        """Return a table for one other surface, with `number` added to the seed."""
         return self.model_copy(update={"seed": self.seed + number, "realisations": 1})
 
     def surface(self, grid: Grid, _: Path, factor: int = 1) -> Surface:
@@ -163,19 +163,21 @@ class MeasuredRoughness(Table):
         return self
 
     def variant(self, number: int) -> Self:
-        """Return the table of one other surface.
+        """Return a table for one other surface.
 
-        `number` is added to `seed` if the surface is a twin of the scan, and otherwise to `place`.
+        If the surface is a twin (a random surface with the statistics of the scan), `number` is
+        added to `seed`. Otherwise `number` is added to `place`, which selects the part of the scan
+        that is used.
         """
-        if self.seed is None:  # only a twin has a seed
+        if self.seed is None:  # the surface is not a twin
             return self.model_copy(update={"place": self.place + number, "realisations": 1})
         return self.model_copy(update={"seed": self.seed + number, "realisations": 1})
 
     def scan(self, folder: Path) -> Surface:
-        """Read, clean and level the scan, and move the point that `place` selects to the middle.
+        """Read, clean and level the scan, and move it so that a given point is in the middle.
 
-        `place` is the number of this point in a fixed sequence of points (see `surfaces.shift`).
-        The file name is relative to `folder`.
+        The key `place` is the number of this point in a fixed sequence (see `surfaces.shift`). The
+        file name is relative to `folder`.
         """
         with _naming({}):
             scan = read_surface(
@@ -186,15 +188,15 @@ class MeasuredRoughness(Table):
                 scan = crop(scan, x=self.crop.x, y=self.crop.y)
             if self.outliers is not None:
                 scan = remove_outliers(scan, self.outliers)
-        # Level the whole scan before a part is cut out, because tilt and form are properties of
-        # the whole scan.
+        # Level the scan before cutting out the part that the grid covers, because tilt and form are
+        # properties of the whole scan.
         return place_of(level(scan, self.detrend), self.place)
 
     def surface(self, grid: Grid | None, folder: Path, factor: int = 1) -> Surface:
         """Make the roughness on cells `factor` times smaller than those of `grid`.
 
-        If `grid` is None, the pixels of the scan are the cells. Smaller cells resolve shorter waves
-        of the scan, down to the pixel. Cells smaller than the pixel add no waves.
+        If `grid` is None, the pixels of the scan replace the cells of `grid`. Smaller cells resolve
+        shorter waves, but cells smaller than the pixels add no waves.
         """
         scan = self.scan(folder)
         grid = grid or scan.grid
@@ -212,9 +214,13 @@ class MeasuredRoughness(Table):
             return kept(asked, lambda: self._placed(scan, grid, factor))
 
     def _placed(self, scan: Surface, grid: Grid, factor: int) -> Surface:
-        """Place the scan, extended if requested, on cells `factor` times smaller than in `grid`."""
+        """Place the scan on cells `factor` times smaller than those of `grid`.
+
+        The scan is extended first if the key `extend` is given.
+        """
         if self.extend == "twin":
-            # The waves of a twin do not depend on the grid, so evaluate them on the fine grid.
+            # A twin is a random surface with the statistics of the scan. Its waves do not depend on
+            # the grid, so evaluate them on the fine grid.
             placed, steps = extend(scan, divided(grid, factor), "twin", seed=self.seed), factor
         else:
             steps = self._steps_to_pixel(grid, scan.grid, factor)
@@ -232,9 +238,9 @@ class MeasuredRoughness(Table):
     def _steps_to_pixel(self, grid: Grid, pixels: Grid, factor: int) -> int:
         """Number of parts into which each cell of `grid` is divided along each axis.
 
-        The scan is placed on these parts. Their number is a power of two that divides `factor`. It
-        is the smallest for which the parts are not larger than the pixels or, if there is none, the
-        largest.
+        The scan is placed on these parts. Their number starts at 1 and is doubled until the parts
+        are not larger than the pixels. Doubling ends earlier if the number would no longer divide
+        `factor`.
         """
         steps = 1
         while factor % (2 * steps) == 0 and any(

@@ -1,4 +1,4 @@
-"""Tables of the case file: the base class, and the tables of grid, depths and unloading."""
+"""Tables of the case file: the base class, and tables for the grid, loading and unloading."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from restitution.numerics.grid import Grid
 FACTORS = (1, 2, 4, 8, 16, 32, 64)  # allowed refinement factors
 # Largest number of nodes of a grid. More nodes do not fit into the memory of common machines.
 MOST_NODES = 2**27
-MOST_STEPS = 10_000  # largest number of depths of a curve
+MOST_STEPS = 10_000  # largest number of depths (states of loading) of a curve
 _SAME = 1e-9  # largest relative difference of normal velocities that count as equal
 
 
@@ -91,7 +91,7 @@ class GridTable(Table):
     def factor(self) -> int:
         """Refinement factor at the deepest depth; 1 for "auto".
 
-        It is the number of parts into which a cell is divided along each axis.
+        The factor is the number of parts into which a cell is divided along each axis.
         """
         if isinstance(self.refine, tuple):
             return self.refine[-1]

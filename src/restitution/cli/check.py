@@ -89,7 +89,7 @@ def check(
 
 
 def _read(path: Path) -> tuple[Case, int]:
-    """Return the case in `path` and 0. For a study, return its first case and number of cases."""
+    """Return the case in `path` and 0, or the first case of a study and its number of cases."""
     from restitution.case.case_file import naming, parse_case, parse_toml, read_text
     from restitution.sweeps.sweep import parse_study
 

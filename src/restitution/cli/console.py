@@ -1,4 +1,4 @@
-"""The two consoles: answers on standard output, progress and warnings on standard error."""
+"""The two consoles: standard output for answers, standard error for progress and warnings."""
 
 import shlex
 from collections.abc import Iterable
@@ -21,7 +21,7 @@ def say(text: str, console: Console = answers, style: str | None = None) -> None
 
 
 def table_of_numbers(*columns: str | Column) -> Table:
-    """Make an empty table. A column given as a text, not as a `Column`, is right-aligned."""
+    """Make an empty table. A column whose header is given as a plain text is right-aligned."""
     each = (
         column if isinstance(column, Column) else Column(column, justify="right", no_wrap=True)
         for column in columns
@@ -30,7 +30,7 @@ def table_of_numbers(*columns: str | Column) -> Table:
 
 
 def print_numbers(table: Table) -> None:
-    """Print a table of numbers. If it is wider than the terminal, its cells are not cut."""
+    """Print a table of numbers without cutting its cells, even if it is wider than the terminal."""
     for column in table.columns:
         cells = column.header, *column.cells
         lines = (line for cell in cells for line in str(cell).split("\n"))
@@ -64,7 +64,7 @@ def command(verb: str, *arguments: object) -> str:
 
 
 def say_written(path: Path, names: Iterable[str] = ()) -> None:
-    """Print that the file `path`, or the files `names` in the folder `path`, were written."""
+    """Print that the file `path` was written, or the files `names` in the folder `path`."""
     inside = ", ".join(names)
     say(f"In {path}: {inside}" if inside else f"Written: {path}")
 

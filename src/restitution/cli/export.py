@@ -56,7 +56,10 @@ def export(
             for warning in law.warnings:
                 warn(warning, law.pair)
             if at is not None and not law.at(at).resolved:
-                warn(f"the grid does not resolve COR at {at:g} m/s; the files note this", law.pair)
+                warn(
+                    f"the grid does not resolve the contact at {at:g} m/s; the files note this",
+                    law.pair,
+                )
     written = write_export(texts, out)
     if at is not None:
         for law in read:

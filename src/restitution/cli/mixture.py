@@ -60,7 +60,10 @@ def mixture(
     for warning in condensed_warnings(pairs):
         warn(warning)
     if unresolved := sum(not all(point.resolved for point in pair.law.points) for pair in pairs):
-        warn(f"{unresolved} of {len(pairs)} laws have velocities that the grid does not resolve")
+        warn(
+            f"{unresolved} of {len(pairs)} laws contain velocities at which the grid does not "
+            "resolve the contact"
+        )
     worst = max(pair.interpolation_error for pair in pairs)
     say(
         f"{len(pairs)} pairs from {runs} computed curves; interpolation between sizes adds at most "

@@ -1,7 +1,7 @@
 """Arguments and options that several commands share.
 
-In the help, OUT is always the folder that a command writes, and FILE a single file that it writes.
-The placeholders of most inputs state the content of the input, such as CASE or RESULTS.
+In the help, OUT stands for a folder that a command writes, and FILE for a single file. Most inputs
+have a placeholder that says what they contain, such as CASE or RESULTS.
 """
 
 from enum import StrEnum

@@ -60,4 +60,4 @@ def cases_progress(cases: int | None, out: object, resume: str) -> Iterator[Prog
     except KeyboardInterrupt:
         errors.print("Interrupted.", style="red")
         say(f"Completed cases are kept; to resume: {resume}", errors)
-        raise typer.Exit(130) from None  # after SIGTERM, `main` sets another status
+        raise typer.Exit(130) from None  # 130: Ctrl-C; `main` replaces it after other signals

@@ -17,7 +17,7 @@ def report(
         ),
     ],
 ) -> None:
-    """Write a self-contained HTML page of RESULTS into its folder."""
+    """Write a self-contained HTML page of the results into the folder RESULTS."""
     from restitution.cli.console import say_written
     from restitution.pages.report import write_report
 

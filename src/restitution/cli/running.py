@@ -26,11 +26,11 @@ def run_with_progress(
     start: Callable[..., dict[str, Any]],
     figures: FigureFormat,
 ) -> dict[str, Any]:
-    """Compute the case in the file `case` by calling `start`; store, print and draw the results.
+    """Compute the case in the file `case`; store, print and draw the results; return the summary.
 
-    `start` has the parameters of `run_realisations`. It returns the summary, which this function
-    also returns. `runs` maps the case to its number of curves, which the progress bar needs. If a
-    run is interrupted or fails, the depths computed so far are stored and drawn.
+    `start` computes the case. It has the parameters of `run_realisations` and returns the summary.
+    `runs` returns the number of curves of a case, for the progress bar. If a run is interrupted or
+    fails, the depths computed so far are stored and drawn.
     """
     from restitution.case.case_file import naming, read_case
     from restitution.cli.console import (
@@ -83,7 +83,7 @@ def run_with_progress(
     except KeyboardInterrupt:
         errors.print("Interrupted.", style="red")
         _draw_partial_results(folder, depths, figures)
-        raise typer.Exit(130) from None  # after SIGTERM, `main` sets another status
+        raise typer.Exit(130) from None  # 130: Ctrl-C; `main` replaces it after other signals
     except BaseException:
         if received:
             errors.print("Interrupted.", style="red")

@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 
-# A signal raises an exception. If the signal arrives during a callback, Python may drop this
-# exception. The signal is then sent again after this time (s), when the callback has returned.
+# A signal raises an exception, which Python may drop if the signal arrives during a callback. The
+# signal is then sent again after this time (s), when the callback has returned.
 _REPEAT_AFTER = 0.05
 
 
@@ -32,9 +32,8 @@ received: list[int] = []
 def stoppable() -> Iterator[None]:
     """Raise `Stopped` on SIGTERM and SIGHUP, unless they are already ignored (`nohup`) or handled.
 
-    Python drops exceptions that are raised in a destructor or in the callback of a weak reference.
-    If the exception of a signal or of Ctrl-C is dropped there, the signal is sent again a moment
-    later.
+    Python drops an exception that is raised in a destructor or in the callback of a weak reference.
+    If it drops `Stopped` or `KeyboardInterrupt`, the signal is sent again a moment later.
     """
 
     def stop(number: int, _: FrameType | None) -> None:

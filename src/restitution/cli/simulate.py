@@ -93,9 +93,9 @@ def simulate(
     courses, blended = [], False
     for each in velocities:
         found, energies = collide_in_time(force, each), law.at(each)
-        # The difference between the simulated COR and the COR from the stored energies estimates
-        # the error that the force curves cause. The printed error is never smaller than the error
-        # of the COR from the stored energies.
+        # Errors of the force curves change the simulated COR, but not the COR from the stored
+        # energies. The difference between these two COR estimates the effect of such errors. The
+        # printed error is at least the error of the COR from the stored energies.
         error = max(abs(found.restitution - energies.restitution), energies.error)
         courses += course(found)
         table.add_row(
@@ -187,8 +187,8 @@ def _oblique(
             )
     print_numbers(table)
     say(
-        "loss: energy lost to friction. ±: error of the tangential law; errors of the normal "
-        "forces and of the grid are not included."
+        "loss: energy lost to friction. ±: error due to the tangential law alone, without the "
+        "errors of the normal forces and of the grid."
     )
     if out is not None:
         write_table(out, courses)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Protocol
 
-# Largest number of characters of a warning that are quoted in the message about its repetitions.
+# The message about repetitions quotes at most this number of characters of the repeated warning.
 _QUOTED = 60
 
 
@@ -27,7 +27,7 @@ def warn_once() -> Iterator[Warn]:
     from restitution.display import counted, some_of, without_numbers
 
     first: dict[str, str] = {}
-    repeated: dict[str, list[tuple[str, str]]] = {}  # messages and subjects of each kind
+    repeated: dict[str, list[tuple[str, str]]] = {}  # pairs (message, subject) by kind
 
     def warn_or_count(message: str, subject: str = "") -> None:
         kind = without_numbers(message)

@@ -35,16 +35,17 @@ from restitution.theory import Kendall
 _ACCURACY = 1e-3  # tolerance of solves between releases, as a fraction of the crack opening
 
 # The balance (see the top of this file) is interpolated between the state before a retraction
-# (position 0) and the state after it (position 1). It may be extrapolated backwards, at most to the
-# position _EARLIEST. The energy release rate G is averaged over the edge nodes that are about to
-# move. At these nodes, G exceeds the fraction _ACTIVE of the work of adhesion.
+# (position 0) and the state after it (position 1). It can also be extrapolated to positions below
+# 0, but not below _EARLIEST. The energy release rate G is averaged only over edge nodes at which it
+# exceeds the fraction _ACTIVE of the work of adhesion.
 _ACTIVE, _EARLIEST = 0.8, -0.5
-# Smallest pull-off radius of an asperity (cells) for which balances are used. On coarser grids most
-# nodes leave the contact because the bodies separate, not because G reaches the work of adhesion.
+# Balances are used only if the contact radius at which an asperity pulls off is at least this
+# number of cells. On coarser grids, most nodes leave the contact because the bodies separate, not
+# because G reaches the work of adhesion.
 _RESOLVED = 2.0
-# To find the balance of a loaded contact, the bodies are retracted by the fraction _RETREAT of the
-# pull-off displacement of a flat punch with the same contact area. The retracted contact is solved
-# with the tolerance _BALANCE_RESIDUAL.
+# To find the balance of a loaded contact, the bodies are retracted. The distance is _RETREAT times
+# the pull-off displacement of a flat punch with the same contact area. The retracted contact is
+# solved with the tolerance _BALANCE_RESIDUAL.
 _RETREAT, _BALANCE_RESIDUAL = 0.05, 1e-5
 # A contact grows by rings of nodes around it. If less than this fraction of the nodes of a ring is
 # released again, the next ring is twice as wide.
@@ -64,10 +65,12 @@ def release_nodes(
 ) -> tuple[State, State]:
     """Hold nodes in contact, then release nodes as long as some meet the detachment criterion.
 
-    `held` marks the nodes that are held at first. `held` and `first_guess` (Pa) are arrays on
-    `box`. `limit` (Pa) is the upper bound of the pressure. The plastic displacement of `history`
-    is included in the gap. `residual` is the tolerance of the last solve. Returns the state before
-    the first release and the state after the last one.
+    A held node stays in contact, even under tension, until it is released. `held` marks the nodes
+    that are held at first. `held` and `first_guess` (pressure in Pa) are arrays on `box`, a
+    rectangle of grid nodes.
+    `limit` (Pa) is the upper bound of the pressure. The plastic displacement of the earlier state
+    `history` is included in the gap. `residual` is the tolerance of the last solve. Returns the
+    state before the first release and the state after the last one.
     """
     grid, pair = contact.grid, contact.pair
     around = union(candidate_box(contact, indentation, history), bounding_box(held, box))
@@ -95,9 +98,9 @@ def release_nodes(
         if accuracy < 2 * residual:
             accuracy = residual  # a second solve at the end would hardly be more accurate
     while True:
-        # The lower bound of the pressure is twice the tension limit. Nodes beyond this limit are
-        # released, so the bound never restricts the result. The solver is faster with a finite
-        # bound than without a bound.
+        # In the solve, the tension of a node is limited to `2 * tension`, because the solver is
+        # faster with a limit than without one. Nodes under such a tension are released anyway, so
+        # the limit does not affect the result.
         state = solve_pressure(
             contact,
             indentation,
@@ -140,11 +143,12 @@ def grow_contact(
 ) -> State:
     """Let the contact grow outwards from the nodes `held`, ring by ring, and return its state.
 
-    The bodies have no plastic displacement before this load. The first ring is one cell wide. If
-    nearly all of its nodes stay in contact, the next ring is twice as wide. The contact stops
-    growing when a further ring of one cell no longer lowers the energy. Under the detachment
-    criterion `pohrt-popov`, all rings are one cell wide, and the contact grows while nodes of the
-    ring stay in contact.
+    The bodies have not yielded before. The first ring is one cell wide. If nearly all nodes of a
+    ring stay in contact, the next ring is twice as wide. The contact stops growing when a further
+    ring of one cell no longer lowers the energy.
+
+    With the detachment criterion `pohrt-popov`, all rings are one cell wide. The contact then grows
+    as long as each ring adds contact nodes.
     """
     closure = contact.detachment == "crack-closure"
 
@@ -206,9 +210,9 @@ def unload_adhesive(
 ) -> State:
     """Move an adhesive contact to a smaller `indentation` and release nodes there.
 
-    `first_guess` is an array on the box of `state`. The new state stores the force just before the
-    first release. While the contact area is fixed, the force is linear in the indentation, so the
-    trapezoidal rule gives the work up to the first release exactly.
+    `first_guess` (Pa), the initial pressure, is an array on the box of `state`. The new state also
+    stores the force just before the first release. Up to this release, the contact area is fixed
+    and the force is linear in the indentation. The trapezoidal rule then gives the work exactly.
     """
     before_release, settled = release_nodes(
         state.contact,
@@ -242,7 +246,7 @@ def pull_off_of_punch(state: State) -> tuple[float, float]:
 
 
 def balances_are_reliable(state: State) -> bool:
-    """Whether the grid is fine enough to compute the balance (`balance_of`) of a contact area."""
+    """Whether `balance_of` is reliable: the grid is fine, and `pohrt-popov` is not used."""
     return state.contact.detachment != "pohrt-popov" and adhesive_nodes(state) >= _RESOLVED
 
 
@@ -250,9 +254,9 @@ def balance_of(state: State) -> tuple[float, float]:
     """Return the balance of the contact area of a loaded `state`: indentation (m) and force (N).
 
     At the balance, the energy release rate equals the work of adhesion. To find the balance, the
-    contact is solved once more with the same contact area. The indentation of this solve is smaller
-    by a fraction of the pull-off displacement of a flat punch with this area. If no balance exists,
-    the values of `state` are returned.
+    contact is solved once more with the same contact area but at a smaller indentation. The
+    decrease is a fraction of the pull-off displacement of a flat punch with this area. If no
+    balance exists, the values of `state` are returned.
     """
     contact = state.contact
     if state.contact_nodes == 0:
@@ -275,9 +279,10 @@ def _balance(state: State, retracted: State) -> tuple[float, float] | None:
 
     At the balance, the mean of the energy release rate G along the edge equals the work of
     adhesion. `retracted` has the same contact area at a smaller indentation. While the contact area
-    is fixed, sqrt(G) and the force are linear in the indentation, so the two states determine the
-    balance. Returns None if G does not exceed the fraction `_ACTIVE` of the work of adhesion at any
-    edge node, or if the mean of G does not increase from `state` to `retracted`.
+    is fixed, sqrt(G) and the force are linear in the indentation. So `state` and `retracted`
+    determine the balance. Returns None if the mean of G does not increase from `state` to
+    `retracted`. Also returns None if G is below the fraction `_ACTIVE` of the work of adhesion at
+    all edge nodes.
     """
     contact = state.contact
     touching = state.box_pressure != 0

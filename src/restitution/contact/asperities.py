@@ -12,8 +12,8 @@ Array = NDArray[np.float64]
 _FROM, _TO = slice(1, None), slice(None, -1)
 _ALL = slice(None)
 _STRIP = 32  # rows computed at a time, so that intermediate arrays stay in the cache
-# For each of the eight directions, a pair of blocks of the grid: all nodes that have a neighbour in
-# this direction, and these neighbours.
+# Two blocks of the grid for each of the eight directions. The first block contains all nodes that
+# have a neighbour in this direction. The second block contains these neighbours.
 _NEIGHBOURS = [
     ((to_x, to_y), (from_x, from_y))
     for to_x, from_x in ((_TO, _FROM), (_ALL, _ALL), (_FROM, _TO))
@@ -47,8 +47,9 @@ def elongation_of(gap: Array, spacing: tuple[float, float]) -> Array:
 def crest_gap_of(gap: Array) -> Array:
     """Gap at the crest of the asperity that each node belongs to.
 
-    The crest is the local minimum of the gap that a path of steepest descent reaches from the node.
-    Each step of the path leads to the lowest of the eight neighbours.
+    To find the crest, a path begins at the node. Each step of the path leads to the one of the
+    eight neighbours with the smallest gap. The path ends at the crest, where no neighbour has a
+    smaller gap.
 
     Args:
         gap: Gap before loading (m), shape (nx, ny).
@@ -88,7 +89,7 @@ def _elongation(gap: Array, spacing: tuple[float, float]) -> Array:
 
 
 def _take_smaller_neighbours(lowest: Array, values: Array, axis: int) -> None:
-    """Replace `lowest` by the `values` of the neighbours along `axis` where these are smaller."""
+    """Where a neighbour along `axis` has a smaller value than `lowest`, write it to `lowest`."""
     ahead, behind = ((_ALL,) * axis + (part,) for part in (_FROM, _TO))
     np.minimum(lowest[behind], values[ahead], out=lowest[behind])
     np.minimum(lowest[ahead], values[behind], out=lowest[ahead])

@@ -113,9 +113,9 @@ class Pair:
 
     @property
     def tangential_modulus(self) -> float:
-        """Tangential modulus G* (Pa), with G = E/(2 + 2ν).
+        """Tangential modulus G* (Pa) with 1/G* = (2 − ν₁)/(4 G₁) + (2 − ν₂)/(4 G₂).
 
-        It follows from 1/G* = (2 − ν₁)/(4 G₁) + (2 − ν₂)/(4 G₂).
+        G = E/(2 + 2ν) is the shear modulus of a body.
         """
         return 1 / sum(
             (2 - body.poissons_ratio) * (1 + body.poissons_ratio) / (2 * body.youngs_modulus)
@@ -126,9 +126,10 @@ class Pair:
     def shear_compliances(self) -> tuple[float, float]:
         """Compliances α and β of the surfaces under a tangential point force Q (SI, 1/Pa).
 
-        At the distance r from the force, the two surfaces move relative to each other, by α Q/r
-        beside the force and by β Q/r ahead of it and behind it. With the shear moduli G and sums
-        over the bodies, α = Σ (1 − ν)/(2πG) and β = Σ 1/(2πG). The mean of α and β is 1/(πG*).
+        The force moves the two surfaces relative to each other. At the distance r from the force,
+        this displacement is β Q/r on the line of action of the force, and α Q/r on the line
+        perpendicular to it. With the shear modulus G of each body, α = Σ (1 − ν)/(2πG) and
+        β = Σ 1/(2πG), summed over both bodies. The mean of α and β is 1/(πG*).
         """
         # Poisson's ratio and 1/(2πG) of each body, where G is its shear modulus.
         parts = [

@@ -8,9 +8,10 @@ an expanding cavity (Johnson 1970, J. Mech. Phys. Solids 18, 115–126; Johnson 
     bound = Y · min(c₀ + c₁ ln(m/(c₀ Y)), c₂).
 
 c₀ is the ratio of the largest pressure to Y at first yield of a sphere (`yield_coefficient` in
-`theory`). c₁ and c₂ are fitted constants. m measures the strain as an elastic pressure. For a
-sphere of radius R at the indentation δ, m is the largest pressure of an elastic contact at δ, which
-is (2/π) E*a/R with the elastic contact radius a = √(Rδ). At a node of a rough surface, m is
+`theory`). c₁ and c₂ are fitted constants. m is an elastic pressure that is proportional to the
+strain. For a sphere of radius R at the indentation δ, m is the largest pressure of an elastic
+contact at δ. This pressure is (2/π) E*a/R with the elastic contact radius a = √(Rδ). At a node of a
+rough surface, m is
 
     m = m₀ [2(δ − h_c)/(2δ − h_c)]^s,    m₀ = p_e(2δ)/√2.
 
@@ -32,24 +33,24 @@ that touches first. The exponent s decreases from 1 for separate asperities to 0
 p_H is the Hertz pressure at this node between smooth bodies under the same force as the elastic
 rough bodies at the indentation 2δ. Where p_H ≥ m₀, the asperity contacts have merged.
 
-A ridge yields in plane strain. This constrains plastic flow more than at a round asperity. With q
-between 0 (a round asperity, or merged contacts) and 1 (a ridge in separate contact), the
-coefficients become
+A ridge yields in plane strain. Its plastic flow is therefore more constrained than that of a round
+asperity. For ridges, the coefficients become
 
     c₀ (1 + 0.11 q),  c₁ (1 + 1.1 q),  c₂ (1 + 0.25 q),    q = (1 − κ₂/κ₁)² s.
 
-κ₂ and κ₁ are the smaller and the larger curvature of the gap at the node. The factor 1 + 0.11 of a
-ridge is the ratio of the pressures at first yield of a cylinder and of a sphere, 1.79 Y and 1.61 Y
-for ν = 0.3 (Johnson 1985, §§4.2, 4.4).
+κ₂ and κ₁ are the smaller and the larger curvature of the gap at the node. q is 1 for a ridge in
+separate contact, and 0 for round asperities and for merged contacts. At q = 1, the factor of c₀ is
+1.11. This is the ratio of the pressures at first yield of a cylinder and of a sphere, 1.79 Y and
+1.61 Y for ν = 0.3 (Johnson 1985, §§4.2, 4.4).
 
 All other constants were fitted to finite element results (docs/validation.md lists the constants
-and their range). c₂ is above 3 because it also accounts for pile-up around a deep contact, which
-the model does not resolve. The bound reaches c₂ Y at the largest indentation of the finite element
-results.
+and their range). c₂ is above 3, because it also accounts for the pile-up around a deep contact. The
+model does not compute this pile-up. The bound reaches c₂ Y at the largest indentation of the finite
+element results.
 
-If the material hardens with a tangent modulus, the factor Y of the bound is replaced by a flow
-stress. The representative strain is 0.2 a/R (Tabor 1951), with a/R = π m/(2E*). The increase of
-this strain since first yield is the plastic strain at which the flow stress is evaluated.
+If the material hardens with a tangent modulus, a flow stress replaces the factor Y of the bound.
+The flow stress depends on the plastic strain. This strain is the increase, since first yield, of
+the representative strain 0.2 a/R (Tabor 1951), with a/R = π m/(2E*).
 """
 
 from __future__ import annotations
@@ -71,14 +72,15 @@ Nodes = tuple[NDArray[np.intp], ...]  # indices of rows and columns
 # Coefficients of the ratio of the pressure bound to the yield strength, for round asperities:
 # growth with the logarithm of the strain (c₁), and upper limit (c₂).
 GROWTH, LARGEST = 0.65, 3.5
-# Relative increase, from a round asperity to a ridge, of the coefficients c₀ (value at first
+# Relative increases of three coefficients from a round asperity to a ridge: c₀ (value at first
 # yield), c₁ (growth with strain) and c₂ (upper limit).
 _RIDGE_ONSET, _RIDGE_GROWTH, _RIDGE_LARGEST = 0.11, 1.1, 0.25
 _DEPTH_FACTOR = 2.0  # the elastic pressure is computed at this multiple of the indentation
 
-# The tolerance of the elastic solve is _RESIDUAL_FACTOR times that of the bounded solve, but at
-# most _LARGEST_RESIDUAL. With a tolerance of 5e-5, COR differs from its value with 1e-8 by at most
-# 7.5e-5 on 143 random rough surfaces (tests/contact/test_cavity.py checks 1e-4).
+# The bound is computed from an elastic solve. The tolerance of this solve is _RESIDUAL_FACTOR times
+# the tolerance of the later solve under the bound, but at most _LARGEST_RESIDUAL. On 143 random
+# rough surfaces, tolerances of 5e-5 and 1e-8 gave values of COR that differ by at most 7.5e-5
+# (tests/contact/test_cavity.py checks 1e-4).
 _RESIDUAL_FACTOR, _LARGEST_RESIDUAL = 5e3, 5e-5
 _TABOR = 0.2  # representative strain divided by a/R (contact radius a, radius R of the sphere)
 
@@ -134,7 +136,7 @@ def bound_after(state: State, indentation: float, residual: float) -> tuple[Arra
 
 
 def bound_of(contact: Contact, measure: Array, ridge: Array | float = 0.0) -> Array:
-    """Return the pressure bound (Pa) for the strain measure `measure`, which has the unit Pa.
+    """Return the pressure bound (Pa) for `measure`, the value m (Pa) of the module docstring.
 
     `ridge` describes the shape of the asperity, from 0 (round) to 1 (ridge).
     """

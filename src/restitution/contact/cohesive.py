@@ -9,16 +9,17 @@ The bodies interact at every node by a traction that depends on the gap g (the i
 separation, h₀ the initial gap and u_p the plastic displacement. Unlike in the JKR limit, no set of
 contact nodes has to be found, and no nodes are released. Where an equilibrium ceases to exist, the
 solve descends to another equilibrium. `cohesive_path` computes the energy that is dissipated there.
-Surfaces yield where the pressure of the law would exceed the bound. The pressure then stays at the
-bound, and further approach of the surfaces becomes plastic displacement.
+Surfaces yield where the pressure of the law would exceed the pressure bound of the material. The
+pressure then stays at this bound, and further approach of the surfaces becomes plastic
+displacement.
 
 A node is *in contact* if its gap is smaller than 3^{1/6} z₀, the gap at which the attraction is
 largest. At smaller gaps the law is stable: its attraction grows with the gap. As the range of the
 attraction decreases, the nodes in contact approach the contact area of JKR, whose edge is under
 tension.
 
-The solve covers a box of the grid. Nodes outside the box, and the paraboloid outside the grid,
-attract as rigid bodies.
+The solve covers a box, which is a rectangle of grid nodes. The nodes outside the box, and the
+paraboloid outside the grid, also attract but are treated as rigid.
 
 In a periodic contact the box is the whole period, and δ is the approach of the mean planes. The
 mean of u is then zero, and the mean pressure follows from the interface law alone.
@@ -44,16 +45,17 @@ from restitution.numerics.convolution.operators import Convolution
 from restitution.numerics.read_only import freeze
 from restitution.numerics.truncated_newton import minimise_locally
 
-# Largest ratio of the spacing to the shorter of two lengths: the length of the cohesive zone,
-# E* z₀²/w, and sqrt(R* z₀). On coarser grids the edge of the contact is pinned between nodes, which
-# makes the dissipated energy and the pull-off force wrong.
+# The grid spacing must not exceed this fraction of the length of the cohesive zone, E* z₀²/w, nor
+# of sqrt(R* z₀). On coarser grids the edge of the contact is pinned between nodes, which makes the
+# dissipated energy and the pull-off force wrong.
 COARSEST = 0.3
-COMPANION = "companion"  # provenance key that marks the surface of a companion curve
+COMPANION = "companion"  # provenance key of a surface that only serves to compare grids
 
-# A solve includes the nodes at which the gap between the rigid bodies is below this multiple of z₀.
+# A solve includes all nodes at which the attraction matters. There, the gap between the rigid
+# bodies is below about this multiple of z₀ plus the length scale of adhesion.
 _REACH = 12.0
-# Tolerance of the displacement, as a fraction of z₀: _TOLERANCE times the `residual` of a solve,
-# but at least _LEAST_TOLERANCE, because of rounding.
+# The tolerance of the displacement is z₀ times the `residual` of a solve times _TOLERANCE. Because
+# of rounding, it is at least z₀ times _LEAST_TOLERANCE.
 _TOLERANCE, _LEAST_TOLERANCE = 100.0, 1e-7
 # An equilibrium counts as unique if the bound that `is_unique` computes is below this value.
 _UNIQUE = 0.7
@@ -65,12 +67,12 @@ class CohesiveState(State):
 
     Attributes:
         interaction_energy: Energy of the interface law (J); 0 for bodies far apart.
-        far_force: Normal force (N) of the parts of the bodies outside `box`.
+        far_force: Normal force (N) outside `box`, the part of the grid that is solved.
         adhesive_loss: Energy dissipated so far by jumps between equilibria (J).
         jumps: Number of these jumps so far.
         unaccounted: Work of the force minus the change of energy (J), summed over all steps without
             a jump so far. It differs from zero only by the error of integration.
-        smallest_gap: Smallest gap between the surfaces (m); z₀ where they touch without pressure.
+        smallest_gap: Smallest gap between the surfaces (m). The traction is zero at the gap z₀.
     """
 
     interaction_energy: float = 0.0
@@ -95,7 +97,7 @@ class CohesiveState(State):
 
     @property
     def mean_gap(self) -> float:
-        """Mean of the gap g (m) of a periodic contact; z₀ between flat surfaces without force."""
+        """Mean gap (m) of a periodic contact. It is z₀ if flat surfaces exert no force."""
         return super().mean_gap + self.contact.equilibrium_separation
 
     @property
@@ -122,9 +124,10 @@ def cohesive_length(contact: Contact) -> float:
 def coarsest_spacing(pair: Pair, work_of_adhesion: float, z0: float) -> float:
     """The largest grid spacing (m) that resolves the attraction, with a margin for rounding.
 
-    Two lengths must be resolved: the cohesive zone and the radius over which a sphere attracts.
-    This radius is of the order sqrt(R*z₀), because the gap under a paraboloid of radius R* grows by
-    the range z₀ of the attraction within sqrt(2R*z₀) of the apex.
+    The grid must resolve two lengths: the cohesive zone at the edge of a contact, and the radius
+    over which a sphere attracts. This radius is of the order sqrt(R*z₀). At the distance
+    sqrt(2R*z₀) from the apex, the gap under a paraboloid of radius R* has grown by z₀, the range of
+    the attraction.
     """
     zone = pair.contact_modulus * z0**2 / work_of_adhesion
     return COARSEST * (1 + 1e-9) * min(zone, math.sqrt(pair.radius * z0))
@@ -143,7 +146,8 @@ def resolves_range(contact: Contact) -> bool:
 def require_fine_grid(contact: Contact) -> None:
     """Raise `CaseError` if the cells are too coarse to resolve the range of the attraction.
 
-    Surfaces that serve only to compare grids (`COMPANION`) may have coarser cells.
+    Surfaces with the provenance key `COMPANION` are exempt, because they only serve to compare
+    grids.
     """
     if not resolves_range(contact) and not contact.surface.provenance.get(COMPANION):
         raise CaseError(
@@ -165,9 +169,9 @@ def solve_cohesive(
     history: State | None,
     residual: float,
 ) -> CohesiveState:
-    """Descend from the pressure `p` on `box` to an equilibrium.
+    """Find an equilibrium on `box`, by descending from the pressure `p` to lower energies.
 
-    The displacement `u` = K p is computed unless it is given. `limit` is the largest pressure (Pa),
+    `u` is the displacement due to `p`; None to compute it. `limit` is the largest pressure (Pa),
     a number or an array of the shape of the grid. The plastic work and the work error of the result
     are copied from `history` (zero if None), and its adhesive work is zero. The caller updates all
     three. Raises `NotConvergedError`, and `DomainError` if the pressure in a periodic contact
@@ -209,8 +213,8 @@ def solve_cohesive(
     far_force, far_energy = _far(contact, indentation, box)
     energy = float(np.sum(law_of(contact).energy(gap))) * area
     if not law.yields:
-        # Without yield, the gap can be smaller than `law.least`, the limit below which the law is
-        # continued linearly. Add the energy of the continuation.
+        # Below the gap `law.least`, the law of elastic bodies is continued linearly. Add the energy
+        # of this continuation.
         energy += float(np.sum(law.continuation(found.u))) * area
     return CohesiveState(
         contact,
@@ -233,7 +237,7 @@ def solve_cohesive(
 
 
 def rigid_start(contact: Contact, *, limit: Array | float, residual: float) -> CohesiveState:
-    """Return a state of approaching bodies that are far enough apart to begin a loading path.
+    """Return the first state of a loading path, with the bodies far apart.
 
     At this and every larger distance the equilibrium is unique. So the approach up to this state
     dissipates no energy.
@@ -308,10 +312,12 @@ def is_unique(state: CohesiveState) -> bool:
 
     The equilibrium is unique if the spectral radius of the matrix K diag(max(−φ″, 0)) is below 1.
     K is the operator from pressure to elastic displacement, and φ the interaction energy per area
-    as a function of the gap. An upper bound of the spectral radius is the largest row sum of the
-    matrix. In a periodic contact the row sums of K vanish and give no bound. There the bound is the
-    compliance λ/(πE*) of the longest wave (wavelength λ), times the largest −φ″ of all gaps that
-    are not smaller than the present smallest gap.
+    as a function of the gap. The largest row sum of the matrix is an upper bound of the spectral
+    radius.
+
+    In a periodic contact the row sums of K vanish and give no bound. There, the bound is
+    (λ/(πE*)) max(−φ″). λ/(πE*) is the compliance under a pressure wave of the longest wavelength λ.
+    The maximum is taken over the present smallest gap and all larger gaps.
     """
     contact = state.contact
     if contact.periodic:

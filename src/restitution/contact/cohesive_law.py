@@ -78,10 +78,10 @@ class BoundedLaw:
         return energy, slope, stiff
 
     def beyond(self, u: Array) -> Array:
-        """Limiting gap minus actual gap (m) at the displacement `u`; 0 at larger gaps.
+        """Distance (m) by which the gap at the displacement `u` is smaller than `least`, or 0.
 
-        At the limiting gap, `least`, the pressure reaches its limit. If the bodies yield, the
-        result is the plastic displacement added by this solve.
+        At the gap `least`, the pressure reaches its limit. If the bodies yield, the result is the
+        plastic displacement added by this solve.
         """
         return np.maximum(self.least - self.base - u, 0.0)
 

@@ -37,10 +37,10 @@ from restitution.numerics.box import union
 # In a step without a jump, the work of the force must equal the change of energy. This is the
 # largest accepted difference, as a fraction of the reference energy `_scale`.
 ACCURACY = 2e-4
-# The work of the force in a step is computed twice, from the parabola through three forces and by
-# the trapezium rule. In a step without a jump, the two results differ by at most this multiple of
-# the accepted difference. If they differ more, the force may have jumped, and the result of the
-# parabola may be right only by chance.
+# The work of the force in a step is computed twice: by the trapezium rule, and from the parabola
+# through three forces. A step counts as free of jumps only if the two works are nearly equal. Their
+# difference must not exceed _CORRECTION times the error that is allowed for the step. If it does,
+# the force may have jumped, and the parabola may be right only by chance.
 _CORRECTION = 10.0
 _FIRST_STEP = 0.25  # length of the first step, in units of the equilibrium separation z₀
 
@@ -52,8 +52,8 @@ _LEAST_STEP = 1e-5
 _MOST_STEPS = 5000
 _FARTHEST = 0.02  # unloading ends where the tension is below this fraction of the largest tension
 
-# When the box must grow, the new box is large enough for an indentation that is larger by about
-# this factor, so that the box seldom grows.
+# When the box (the part of the grid that is solved) must grow, it is made large enough for about
+# this multiple of the next indentation. So it seldom grows.
 _WIDER = 1.3
 
 
@@ -88,7 +88,7 @@ def load_cohesive(
 def _move(
     state: CohesiveState, indentation: float, residual: float, accuracy: float = ACCURACY
 ) -> CohesiveState:
-    """Follow the path to `indentation`; return its end with the convolutions of the whole path."""
+    """Follow the path to `indentation`; return the last state, with all convolutions counted."""
     end, convolutions = state, 0
     for end in follow(state, indentation, residual=residual, accuracy=accuracy):
         convolutions += end.convolutions
@@ -116,7 +116,7 @@ def load_until(
         if reached(state):
             return before, state
         before = state
-    raise NotConvergedError("the loading path has ended early")  # not reached: `follow` raises
+    raise NotConvergedError("the loading path has ended early")  # never: `follow` raises first
 
 
 def step_cohesive(state: CohesiveState, indentation: float, *, residual: float) -> CohesiveState:
@@ -237,7 +237,7 @@ def _accounted(state: CohesiveState, step: _Step, smooth: bool) -> CohesiveState
 
 
 def _try(previous: CohesiveState | None, state: CohesiveState, at: float, residual: float) -> _Step:
-    """Make a trial step to the indentation `at`. Its first guess extrapolates two states."""
+    """Make a trial step to the indentation `at`, extrapolated from `previous` and `state`."""
     contact, box = state.contact, state.box
     limit, convolutions = bound_after(state, at, residual)
     p, u = state.box_pressure, state.box_displacement
@@ -271,7 +271,7 @@ def _try(previous: CohesiveState | None, state: CohesiveState, at: float, residu
 
 
 def _parabola(previous: CohesiveState, state: CohesiveState, new: CohesiveState) -> float:
-    """Work (J) of the force in the last of two steps, from the parabola through three states."""
+    """Work (J) of the force from `state` to `new`, by the parabola through all three forces."""
     a = state.indentation - previous.indentation
     b = new.indentation - state.indentation
     second = ((new.force - state.force) / b - (state.force - previous.force) / a) / (a + b)
@@ -279,13 +279,13 @@ def _parabola(previous: CohesiveState, state: CohesiveState, new: CohesiveState)
 
 
 def _scale(state: CohesiveState, *, loading: bool) -> float:
-    """Reference energy (J): the error of a step may reach `accuracy` times this energy."""
+    """Reference energy (J). The allowed error of a step is a fraction of this energy."""
     scale = state.stored_energy + abs(state.interaction_energy)
     return scale + state.plastic_work if loading else scale
 
 
 def _on_wider_box(state: CohesiveState, at: float, residual: float) -> CohesiveState:
-    """Solve `state` on a larger box if bodies at the indentation `at` interact outside its box."""
+    """Solve `state` on a larger box if nodes outside its box interact at the indentation `at`."""
     needed = interacting_box(state.contact, at, state)
     if union(state.box, needed) == state.box:
         return state

@@ -119,8 +119,7 @@ class Contact:
             if value not in known:
                 names = ", ".join(filter(None, known))
                 raise CaseError(f'{name}: "{value}" is not one of {names}')
-        # Numbers of other types are converted, because the compiled loops accept only double
-        # precision.
+        # The compiled loops accept only double precision, so convert all other types of numbers.
         for name in (
             "yield_pressure",
             "work_of_adhesion",
@@ -254,7 +253,8 @@ class Contact:
 
         Returns:
             The magnitude of the indentation or the length scale of adhesion, whichever is larger
-            (m). Between flat bodies, this length scale is the equilibrium separation.
+            (m). Flat bodies have no length scale of adhesion; the equilibrium separation replaces
+            it.
         """
         return max(abs(indentation), self.adhesive_length or self.equilibrium_separation)
 
@@ -282,9 +282,9 @@ class Contact:
     def apex(self) -> tuple[float, float]:
         """Coordinates x and y of the lowest point of the smooth bodies (m).
 
-        In general the apex is the origin, which is a node. But in an adhesive contact without
-        roughness (`smooth`) the apex lies between nodes. If it were a node, whole rings of nodes
-        would attach and detach at once, which would double the error of restitution.
+        In general the apex is the origin, which is a node. In an adhesive contact without roughness
+        (`smooth`), however, the apex lies between nodes. If it were a node, whole rings of nodes
+        would attach and detach at once, which would double the error of COR.
         """
         if not self.adhesive or self.surface.provenance.get("source") != "smooth":
             return 0.0, 0.0
@@ -311,9 +311,9 @@ class Contact:
 
     @cached_property
     def mean_offset(self) -> float:
-        """Gap (m) at the apex, between the mean surfaces of the bodies at first touch.
+        """Gap (m) between the mean surfaces of the bodies, at the apex and at first touch.
 
-        A mean surface has the shape of the smooth body, at the mean height of the roughness.
+        The mean surface of a body is its smooth shape at the mean height of its roughness.
         """
         at = tuple(n // 2 for n in self.grid.nodes)  # the origin
         r2 = sum(along**2 for along in self.apex)

@@ -11,19 +11,20 @@ nodes at a kink until G = 1.0 w. The pull-off force is therefore too large: its 
 1.5 times the ratio of cell size to contact radius.
 
 `crack-closure`: the contact edge is a crack, and G is the work of closing the crack by one cell
-(Rybicki and Kanninen 1977, Eng. Fract. Mech. 9, 931–938). For each face between a node in contact
-and a node outside, this work per area is ½ |p| times the opening, with the pressure p of the node
-in contact. The relative error of G is 1e-3 on a straight edge. On a staircase, only the mean of G
-over the faces has this accuracy. G is therefore averaged along the edge over about five cells, but
-never across to another patch. The opening is the elastic displacement u of the node outside, minus
-its extrapolation from the nodes in contact:
+(Rybicki and Kanninen 1977, Eng. Fract. Mech. 9, 931–938). G is computed for each face between a
+node in contact and a node outside. The work per area is ½ |p| times the opening, with the pressure
+p of the node in contact. The relative error of G is 1e-3 on a straight edge. On a staircase, only
+the mean of G over the faces has this accuracy. G is therefore averaged along the edge over about
+five cells, but never across to another patch. The opening is the elastic displacement u of the node
+outside, minus the value that is extrapolated from the nodes in contact:
 
-    opening = (u₊ − 2u₀ + u₋) + (h₀ − 2h₋ + h₋₋),
+    opening = (u₊ − 2u₀ + u₋) + (h₀ − 2h₋ + h₋₋).
 
-where h is the gap before elastic displacement. Index 0 is the edge node, + the node outside, and −
-and −− the nodes inside. The second bracket extrapolates with the curvature of the surfaces in the
-contact. The gap h of the node outside does not appear in the formula. An initial gap between
-surfaces that never touched is therefore not part of the opening.
+h is the gap before elastic displacement. Index 0 is the edge node, + the node outside, and − and −−
+are the next two nodes inside. The first bracket is the difference from a linear extrapolation of u.
+The second bracket corrects the extrapolation for the curvature of u, which in the contact is that
+of −h. The gap h of the node outside does not appear in the formula. An initial gap between surfaces
+that never touched is therefore not part of the opening.
 
 The limit σ_c of a rectangular cell with the edges hx and hy is given by σ_c² = 2πE*w hx hy/I. I is
 the integral of 1/r over all pairs of points of a cell, where r is the distance between the two
@@ -66,10 +67,10 @@ _RELEASE_RADIUS, _LARGEST_RADIUS = 3, 40
 # only if G exceeds this factor times the work of adhesion.
 _LARGEST_ON_COARSE_GRIDS = 1.04
 # A grid counts as fine if the rim under tension is wider than _RESOLVED_RIM (cells). On a fine grid
-# the mean of G is accurate. A patch is at rest if the mean of max(1 − sqrt(w/G), 0) over its edge
-# nodes is below _AT_REST, with the work of adhesion w. On a fine grid, a node is not released
-# because its tension exceeds a limit. Nodes at the kinks of an edge would reach such a limit as
-# soon as G = w, and their release would roughen the edge.
+# the mean of G is accurate, and the tension of single nodes is not limited. A limit would release
+# nodes at the kinks of an edge as soon as G reaches the work of adhesion w, and would thus roughen
+# the edge. A patch is at rest if the mean of max(1 − sqrt(w/G), 0) over its edge nodes is below
+# _AT_REST.
 _RESOLVED_RIM, _AT_REST = 2.0, 0.002
 # Smallest width (cells) of a strip along the edge whose nodes are all released together. If the
 # strip is narrower, single nodes are released.
@@ -242,12 +243,11 @@ class Edge:
 
 
 def _curvature(touching: Mask, nodes: Nodes, faces: NDArray[np.intp]) -> Array:
-    """Mean curvature (1/cell) of the contact edge, for each edge node; larger values become 0.35.
+    """Mean curvature (1/cell) of the edge of each edge node's patch, limited to 0.35.
 
-    The mean is taken over the outline of the patch of the node. It is 2π divided by the perimeter
-    of the patch. The perimeter is estimated as π/4 times the number of faces between the patch and
-    the nodes outside. The factor is the average ratio of the length of a smooth outline to the
-    length of its staircase.
+    The mean curvature is 2π divided by the perimeter of the patch. The perimeter is estimated as
+    π/4 times the number of faces between the patch and the nodes outside. The factor π/4 is the
+    average ratio of the length of a smooth outline to the length of its staircase.
     """
     patch = _patch_numbers(touching, nodes)
     total = np.bincount(patch, weights=faces)[patch]
@@ -255,7 +255,7 @@ def _curvature(touching: Mask, nodes: Nodes, faces: NDArray[np.intp]) -> Array:
 
 
 def _patch_numbers(touching: Mask, nodes: Nodes) -> NDArray[np.intp]:
-    """Number of the patch to which each edge node belongs.
+    """For each edge node, the index of its contact patch.
 
     Contact nodes are in the same patch if their cells are connected by sides or corners.
     """

@@ -14,9 +14,9 @@ K p > 0 under every positive pressure. So solving on the bounding box of this se
 adhesion the lower bound at the nodes held in contact is negative (a tension). The box then also
 contains these nodes and a margin of two cells.
 
-In a periodic contact, the mean of K p is zero, so K p < 0 somewhere. Nodes with h ≥ δ may therefore
+In a periodic contact, the mean of K p is zero, so K p < 0 somewhere. Nodes with h ≥ δ can therefore
 come into contact, and the box is the whole grid. The mean of the gradient, mean(h) − δ, is the mean
-of the deformed gap. An elastic contact is therefore complete at δ = mean(h).
+of the deformed gap. At δ = mean(h) this mean is zero, so an elastic contact has no open gap left.
 """
 
 from __future__ import annotations
@@ -89,22 +89,25 @@ def solve_pressure(
     held: HeldNodes | None = None,
     residual: float = RESIDUAL,
 ) -> State:
-    """Solve for a pressure of at most `limit` on the surface deformed by `history`.
+    """Solve for a pressure of at most `limit`, with the plastic displacement of `history`.
 
-    At the nodes `held` in contact by adhesion, the pressure may fall to −`held.tension`. Elsewhere
-    its lower bound is 0. Without adhesion `held` is None. `limit` (Pa) is a number or an array of
-    the shape of the grid. `box` must contain the `candidate_box` and all held nodes. `residual` is
-    the tolerance on the violation of the contact conditions, relative to the largest overlap before
-    deformation or, with adhesion, to `Contact.residual_length`. Contact at the grid edge is not
-    checked here. Raises `NotConvergedError`, and `DomainError` if a periodic contact of elastic
-    bodies is already complete at a smaller indentation.
+    `limit` (Pa) is a number or an array of the shape of the grid. `held` are the nodes that
+    adhesion holds in contact; None without adhesion. The lower bound of the pressure is
+    −`held.tension` at these nodes, and 0 at all others. `box`, the part of the grid that is solved,
+    must contain the `candidate_box` and all held nodes.
+
+    `residual` is the tolerance on the violation of the contact conditions. Without adhesion it is
+    relative to the largest overlap before deformation, with adhesion to `Contact.residual_length`.
+    Contact at the grid edge is not checked here. Raises `NotConvergedError`. Raises `DomainError`
+    if elastic bodies in a periodic contact have no open gap left at a smaller indentation.
     """
     device, shape = current(), shape_of(box)
     b = _overlap(contact, indentation, box, history)
     if contact.periodic and limit == math.inf and b.mean() >= 0:
         raise DomainError(
             f"indentation: the contact is complete at {1e9 * (indentation - b.mean()):.6g} nm and "
-            "at larger indentations; use a smaller indentation, or prescribe the pressure"
+            "at larger indentations (no gap is left); use a smaller indentation, or prescribe the "
+            "pressure"
         )
     scale = _scale_of(contact, indentation, b)
     operators = operators_of(contact)
@@ -215,9 +218,10 @@ def _scale_of(contact: Contact, indentation: float, b: Array) -> float:
 
 
 def operators_of(contact: Contact, make: Callable[..., Convolution] | None = None) -> Operators:
-    """Return a function that makes the operator and its approximate inverse for a grid level.
+    """Return a function that makes the elastic operator of a grid level and its inverse.
 
-    `make` makes the operator. By default, this is the operator of the free or periodic half-space.
+    The operator gives the displacement due to a pressure; the inverse is approximate. `make` makes
+    the operator, by default that of the free or periodic half-space.
     """
     E_star, (hx, hy) = contact.pair.contact_modulus, contact.grid.spacing
     make = make or (periodic_half_space if contact.periodic else half_space)
@@ -275,13 +279,14 @@ def build_state(
 def candidate_box(contact: Contact, indentation: float, history: State | None = None) -> Box | None:
     """Return the bounding box of the nodes with a gap below `indentation`; None without such nodes.
 
-    Without adhesion, the box contains all contact. For a periodic contact, it is the whole grid.
+    Without adhesion, the box contains all nodes that can come into contact. For a periodic contact,
+    it is the whole grid.
     """
     whole = region = whole_grid(contact)
     gap = contact.gap
     if history is not None:
         if indentation <= history.indentation and not contact.periodic:
-            # On unloading, no new contact arises outside the box.
+            # On unloading, no new contact arises outside the box of `history`.
             region = widen(history.box, 2, contact.grid.nodes)
         gap = gap[region] + history.plastic_displacement[region]
     below = gap < indentation

@@ -4,8 +4,9 @@ Pressure and displacement are positive into the body. Both bodies are combined i
 of contact modulus E*: 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂. In shear, traction and displacement are
 along x. The compliances in shear are sums over both bodies (`Pair.shear_compliances`).
 
-On a periodic half-space, a pressure wave with the angular wave number q causes a displacement wave
-with 2/(E* |q|) times its amplitude (Johnson 1985, *Contact Mechanics*, §13.2).
+On a periodic half-space, a pressure wave with the angular wave number q causes a displacement wave.
+The amplitude of the displacement is 2/(E* |q|) times that of the pressure (Johnson 1985, *Contact
+Mechanics*, §13.2).
 """
 
 from __future__ import annotations
@@ -36,13 +37,13 @@ Arguments = ParamSpec("Arguments")
 # grows, due to cancellation, as the square of the distance.
 _FAR = 32.0
 # Largest operator and largest block of coefficients that are cached, as fractions of the size of
-# the cache. If larger operators were cached too, a few of them would fill the cache as a contact
-# grows. With the default size of the cache, operators of up to 1400² nodes are cached.
+# the cache. Larger operators are not cached, because a few of them would fill the cache. With the
+# default size of the cache, operators of up to 1400² nodes are cached.
 _MAX_OPERATOR, _MAX_COEFFICIENTS = 1 / 15, 2 / 3
 
 
 def _cached(build: Callable[Arguments, Operator]) -> Callable[Arguments, Operator]:
-    """Take the operator from the cache or build it; return it with a separate workspace."""
+    """Cache the operators that `build` makes. Each call returns one with its own workspace."""
 
     @functools.wraps(build)
     def cached(*args: Arguments.args, **kwargs: Arguments.kwargs) -> Operator:
@@ -82,12 +83,12 @@ def far_displacement(x: Array, y: Array, hx: float, hy: float, contact_modulus: 
     The Taylor series of the displacement due to a point load is averaged over the cell. With the
     displacement u, the pressure p and the distance r from the cell,
     u πE*/(p hx hy) = [1 + (hx²∂x² + hy²∂y²)/24 + hx⁴∂x⁴/1920 + hx²hy²∂x²∂y²/576 + hy⁴∂y⁴/1920] 1/r.
-    The relative error is of the order of the sixth power of the ratio of cell size to distance. `x`
-    (m) is a column and `y` (m) a row.
+    The derivatives ∂x and ∂y act on 1/r. The relative error is of the order of the sixth power of
+    the ratio of cell size to distance. `x` (m) is a column and `y` (m) a row.
     """
     xx, yy = hx * hx, hy * hy
     # Coefficients of polynomials in c, the squared direction cosine along x. They follow from
-    # ∂x² 1/r = (3c − 1)/r³ and the further derivatives.
+    # ∂x² 1/r = (3c − 1)/r³ and from the higher derivatives of 1/r.
     second = np.array([2 * yy - xx, 3 * (xx - yy), 0.0]) / 24
     fourth = (
         np.array([9 * xx * xx + 24 * yy * yy, -90 * xx * xx - 120 * yy * yy, 105 * (xx**2 + yy**2)])
@@ -107,10 +108,10 @@ def cerruti_displacement(
 
     The cell is at the origin.
 
-    A tangential force Q along x moves the surface of a half-space of shear modulus G by
-    u = Q [(1 − ν)/r + ν x²/r³]/(2πG) along x, at the distance r from the force (Cerruti 1882;
-    Johnson 1985, *Contact Mechanics*, eq. 3.75). Both terms are integrated over the cell with the
-    identities y²/r³ = ∂²r/∂x², x²/r³ = ∂²r/∂y² and 1/r = x²/r³ + y²/r³. The result is
+    A tangential force Q along x moves the surface of a half-space along x. At the distance r from
+    the force, the displacement is u = Q [(1 − ν)/r + ν x²/r³]/(2πG) with the shear modulus G
+    (Cerruti 1882; Johnson 1985, *Contact Mechanics*, eq. 3.75). Both terms are integrated over the
+    cell with the identities y²/r³ = ∂²r/∂x², x²/r³ = ∂²r/∂y² and 1/r = x²/r³ + y²/r³. The result is
 
         u = α [[x asinh(y/|x|)]] + β [[y asinh(x/|y|)]],   α = Σ (1 − ν)/(2πG),   β = Σ 1/(2πG).
 
@@ -136,7 +137,7 @@ def influence_coefficients(
     contact_modulus: float,
     device: Device = CPU,
 ) -> Array:
-    """Displacement per unit pressure (m/Pa) at lags of i and j cells.
+    """Displacement per unit pressure (m/Pa), at i and j cells from the loaded cell.
 
     `i` is a column and `j` a row; both start at 0.
     """
@@ -248,10 +249,11 @@ def foundation_compliance(
 
 
 def _unit_coefficients(lags: tuple[int, int], aspect: float, device: Device) -> Array:
-    """Coefficients for cells 1 × `aspect` and E* = 1, as a view that callers must not modify.
+    """Influence coefficients for cells 1 × `aspect` and E* = 1; callers must not modify them.
 
-    The number of lags depends on the size of the contact, so it differs between most solves. The
-    cache keeps the largest block so far, and smaller blocks are views of it.
+    `lags` are the numbers of coefficients along x and y. They depend on the size of the contact, so
+    they differ between most solves. The cache keeps the largest block of coefficients so far, and
+    smaller blocks are views of it.
     """
     key = _compute_coefficients, aspect, device
     known: Array | None = operator_cache.get(key)

@@ -38,13 +38,13 @@ from restitution.numerics.read_only import freeze
 # Retraction after each loading increment (m) (Ghanbarzadeh et al. 2019, §2.2).
 PULL_INCREMENT = 1e-10
 # Quadrature of the force of a truncated contact. The tolerance is a fraction of force times
-# indentation. The margin is a multiple of the tolerance and is added to the error. The third value
-# is the initial number of intervals. The integrand is the part of the force due to yielding. It is
-# zero up to first yield. With only one interval it could be zero at all sampled depths.
+# indentation. The margin is a multiple of the tolerance and is added to the error. The quadrature
+# begins with several intervals (panels). The integrand can be the force that truncation removes,
+# which is zero up to first yield. In a single interval, it could be zero at all sampled depths.
 _TRUNCATION_TOLERANCE, _TRUNCATION_MARGIN, _TRUNCATION_PANELS = 3e-5, 10.0, 4
 # Relative tolerance of the integral of an adhesive force. The force jumps as asperities attach,
-# which limits the accuracy. A relative error of 1.5e-3 of the loading work changes the restitution
-# by at most 0.00075.
+# which limits the accuracy. A relative error of 1.5e-3 of the loading work changes COR by at most
+# 0.00075.
 _ADHESIVE_TOLERANCE = 1.5e-3
 # If the pressure bound grows with deformation, the plastic work is a sum over depths. The first
 # depth is _SHALLOW times the indentation, and each further depth is at most _RATIO times the one
@@ -65,7 +65,8 @@ def solve(
             `truncated`, or adhesion on approach), the integral starts from this state instead of
             first touch. With adhesion on approach this state is also the first guess.
         residual: Tolerance on the violation of the contact conditions (dimensionless), relative to
-            the overlap or, with adhesion, to `Contact.residual_length`.
+            the largest overlap of the undeformed surfaces or, with adhesion, to
+            `Contact.residual_length`.
 
     Returns:
         State at `indentation`.
@@ -151,9 +152,9 @@ def solve_without_work(
         if shallower is not None and contact.detachment == "pohrt-popov":
             box, held = shallower.box, shallower.box_pressure != 0
         else:
-            # A contact that grows from a smaller one may stop before the energy release rate along
-            # its edge has fallen to the work of adhesion. So the search starts from all nodes that
-            # overlap at this indentation, and then releases nodes.
+            # A contact that grows from a smaller one can stop growing too early, before the energy
+            # release rate along its edge has fallen to the work of adhesion. So the search starts
+            # from all nodes that overlap at this indentation, and then releases nodes.
             inside = contact.gap <= indentation
             if shallower is not None:
                 inside[shallower.box] |= shallower.box_pressure != 0
@@ -190,7 +191,8 @@ def solve_nonadhesive(
 ) -> State:
     """Solve the contact without adhesion.
 
-    The first guess is the solution on coarser grids, which is better than an earlier state.
+    The first guess is the solution on coarser grids. It is nearer to the result than the pressure
+    of an earlier state would be.
     """
     box = candidate_box(contact, indentation, history)
     if box is None:
@@ -367,9 +369,9 @@ def _work_by_truncation(state: State, start: State | None) -> tuple[float, float
             tolerance,
             panels=_TRUNCATION_PANELS,
         )
-        # Nodes yield one after the other, so the force has many small kinks. The two rules of the
-        # quadrature can then agree by chance. In validation contacts, errors reached nine times the
-        # tolerance.
+        # The quadrature compares two rules to estimate its error. Nodes yield one after the other,
+        # so the force has many small kinks, and the rules can agree by chance. In validation
+        # contacts, errors reached nine times the tolerance.
         its_error += _TRUNCATION_MARGIN * tolerance
     if by_excess:
         increment = end.stored_energy - energy - increment

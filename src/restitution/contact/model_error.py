@@ -1,17 +1,17 @@
 """Error of the coefficient of restitution (COR) due to the models of plasticity and of adhesion.
 
 The error of plasticity comes from a comparison with finite elements (docs/validation.md). The
-largest relative differences of COR in this comparison are tabulated as a function of the COR due to
-plasticity alone, e_p = sqrt(E_el/(E_el + W_p)), with the elastic energy E_el and the plastic work
-W_p. e_p decreases monotonically from first yield to full plasticity, for smooth bodies and for
-asperities. The differences of `expanding-cavity` also depend on the steepness of the asperities
-ψ = E* S/Y, with the rms slope S and the yield strength Y. Outside the range of the finite element
-results, the nearest value is used and may be too small.
+largest relative differences of COR in this comparison are tabulated as a function of e_p, the COR
+due to plasticity alone. With the elastic energy E_el and the plastic work W_p, e_p is
+sqrt(E_el/(E_el + W_p)). It decreases monotonically from first yield to full plasticity, for smooth
+bodies and for asperities. The differences of `expanding-cavity` also depend on the steepness of the
+asperities ψ = E* S/Y, with the rms slope S and the yield strength Y. Outside the range of the
+finite element results, the nearest value is used and may be too small.
 
-The second part of the error belongs to `adhesion = "jkr"`, which neglects the range of the
-attraction and therefore dissipates too much energy. This part is computed from a table of the
-energy that smooth elastic spheres dissipate in one cycle of contact. The table gives this energy as
-a fraction of the energy dissipated in JKR theory, for several values of the Tabor parameter
+With `adhesion = "jkr"` there is a second error. JKR theory neglects the range of the attraction and
+therefore dissipates too much energy. The second error is computed from a table of the energy that
+smooth elastic spheres dissipate in one cycle of contact. The table gives this energy as a fraction
+of the energy dissipated in JKR theory, for several values of the Tabor parameter
 (docs/studies/cohesive_reference.csv).
 """
 

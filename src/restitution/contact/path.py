@@ -72,9 +72,9 @@ def unloading_path(
 ) -> Iterator[State]:
     """Unload a contact step by step to separation.
 
-    Without adhesion, the bodies separate at the indentation δ_s where the force returns to zero. At
-    the indentation δ after step k of n, δ − δ_s is (1 − k/n)² times its initial value. The force of
-    a Hertzian unloading, which is proportional to (δ − δ_s)^1.5, is then a cubic function of k.
+    Without adhesion, the bodies separate at the indentation δ_s where the force returns to zero.
+    After step k of n, the distance δ − δ_s to separation is (1 − k/n)² times its initial value. In
+    a Hertzian unloading, the force is proportional to (δ − δ_s)^1.5 and thus a cubic function of k.
 
     Args:
         state: State to unload.
@@ -84,8 +84,8 @@ def unloading_path(
         residual: Tolerance on the violation of the contact conditions (dimensionless), as in
             `solve`; used only without adhesion.
         known: States of another unloading of the same contact, which began at a smaller
-            indentation. They save time with adhesion: an elastic contact that unloads from a larger
-            indentation passes through the same states, so they are reused without a new solve.
+            indentation. With adhesion they save time. An elastic contact that unloads from a larger
+            indentation passes through the same states, so they are not solved again.
 
     Yields:
         `state`, then the state after each step.

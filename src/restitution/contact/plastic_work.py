@@ -10,24 +10,27 @@ from restitution.contact.state import Array, State
 from restitution.numerics.box import Box
 
 # In each step, the pressure bound of a node grows. The error of the plastic work is a fraction of
-# the growth times the plastic displacement of the step. The fraction is _RULE_ERROR for nodes that
-# had yielded before the step, and _NEW_ERROR for nodes that begin to yield in the step. Both come
-# from a comparison with 11 times as many depths. At nodes that begin to yield in the step, the mean
-# bound is the initial bound plus _NEW times the growth.
+# this growth times the plastic displacement of the step. The fraction is _RULE_ERROR for nodes that
+# had yielded before the step, and _NEW_ERROR for nodes that begin to yield in the step. Both
+# fractions come from a comparison with steps that are 11 times finer. While a node begins to yield,
+# its mean bound is the bound before the step plus _NEW times the growth.
 _RULE_ERROR, _NEW, _NEW_ERROR = 0.1, 0.8, 0.25
 
 
 def plastic_work(before: State | None, after: State) -> tuple[float, float]:
     """Plastic work (J) between two states of loading, and its error (J).
 
-    If `before` is None, loading begins from the undeformed bodies. Otherwise, `after` may be up to
+    If `before` is None, loading begins from the undeformed bodies. Otherwise, `after` is at most
     1.42 times as deep as `before`. Between the indentations δ₁ and δ₂, each node yields by the
-    displacement Δu while its pressure bound grows from b₁ to b₂. If the plastic displacement is
-    linear in δ and the bound is linear in ln δ, the work per area is
-    Δu [b₁ + (b₂ − b₁) (δ₂/(δ₂ − δ₁) − 1/ln(δ₂/δ₁))]. If a node begins to yield in this
-    step, its bound is nearer to b₂ while it yields. The work per area is then
-    Δu [b₁ + `_NEW` (b₂ − b₁)]. The error per area is Δu (b₂ − b₁) times `_RULE_ERROR` or, if the
-    node begins to yield in this step, `_NEW_ERROR`.
+    displacement Δu while its pressure bound grows from b₁ to b₂.
+
+    At nodes that had yielded before, the plastic displacement is assumed linear in δ and the bound
+    linear in ln δ. The work per area is then
+    Δu [b₁ + (b₂ − b₁) (δ₂/(δ₂ − δ₁) − 1/ln(δ₂/δ₁))],
+    and its error is `_RULE_ERROR` Δu (b₂ − b₁).
+
+    A node that begins to yield in this step yields while its bound is nearer to b₂. The work per
+    area is then Δu [b₁ + `_NEW` (b₂ − b₁)], and its error is `_NEW_ERROR` Δu (b₂ − b₁).
     """
     contact, box = after.contact, after.box
     given, begun = after.plastic_displacement[box], np.asarray(contact.first_yield_pressure)

@@ -28,9 +28,9 @@ def solve_at_pressure(contact: Contact, pressure: float, *, residual: float = RE
     """Load a periodic contact to a nominal pressure, within a relative error of 1e-8.
 
     For the solve, the bodies are put on an elastic foundation, whose compression is proportional to
-    the mean pressure. Without the foundation, the indentation of a complete contact does not depend
-    on the pressure. The foundation makes the problem positive definite even in this case. The
-    compression of the foundation is finally subtracted from the indentation.
+    the mean pressure. Without the foundation, the indentation would not depend on the pressure in a
+    complete contact (no gap left). The foundation makes the problem positive definite even then.
+    Finally, the compression of the foundation is subtracted from the indentation.
 
     Args:
         contact: Periodic contact to load.

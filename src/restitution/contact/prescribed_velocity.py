@@ -18,7 +18,7 @@ VELOCITY_TOLERANCE = 1e-6
 # Relative tolerance on the velocity if the loading work is integrated. The relative error of the
 # integral is about 1e-3, so a smaller tolerance would be useless.
 _INTEGRATED_TOLERANCE = 1e-4
-_MAX_GROWTH = 3.0  # largest factor between two successive trial depths
+_MAX_GROWTH = 3.0  # largest ratio of two successive trial depths
 _MOST_STEPS = 8  # largest number of Newton steps
 
 
@@ -26,10 +26,10 @@ def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None 
     """Load the undeformed bodies until the loading work is ½ m* V².
 
     m* is the reduced mass. If the work is known exactly, the relative error of the velocity is at
-    most 1e-6. If the work is integrated numerically, the velocity computed from
-    `State.loading_work` agrees with V within 1e-4. In addition, the work then has the error
-    `State.work_error`. Where the work is positive, it increases with the indentation. The search
-    therefore succeeds unless the work jumps past ½ m* V².
+    most 1e-6. If the work is integrated numerically, it has the error `State.work_error`. The
+    velocity computed from `State.loading_work` then agrees with V within 1e-4 or, where the work
+    jumps, within the relative error of the work. Where the work is positive, it increases with the
+    indentation. The search therefore succeeds unless the work jumps past ½ m* V².
 
     Args:
         contact: Contact to load.
@@ -94,7 +94,7 @@ class _Search:
         return self.bracketed(tolerance) if depth is None else depth
 
     def at(self, indentation: float) -> State:
-        """Return the state at an indentation (m), solved from the next shallower known state."""
+        """Return the state at an indentation (m). A solve starts from the next shallower state."""
         if indentation not in self.found:
             shallower = (state for depth, state in self.found.items() if depth < indentation)
             guess = max(shallower, key=lambda state: state.indentation, default=self._start)
@@ -107,7 +107,7 @@ class _Search:
         return abs(math.sqrt(max(state.loading_work, 0.0) / self._work) - 1)
 
     def first_depth(self) -> float:
-        """Return a first guess (m): a Newton step from the start, or the depth of smooth bodies.
+        """Return a first guess (m), by a Newton step from the start or for smooth bodies.
 
         A cohesive contact is instead loaded until the prescribed work is exceeded. Later solves
         continue from the last state with less work, so the loading path is not followed again.
@@ -155,7 +155,8 @@ class _Search:
             return self._excess(self.at(float(indentation))) if indentation else -1.0
 
         # The work W grows with the depth δ as δ² to δ^2.5. So the relative change of the velocity,
-        # ΔV/V = ½ ΔW/W, is 1 to 1.25 times Δδ/δ, and both may have the same relative tolerance.
+        # ΔV/V = ½ ΔW/W, is 1 to 1.25 times Δδ/δ. The relative tolerance of the velocity is
+        # therefore also used for the depth.
         return float(toms748(excess, low, high, xtol=tolerance * high, rtol=1e-12, k=1))
 
     def _deepest_below(self) -> float:
@@ -176,8 +177,8 @@ class _Search:
     def _excess(self, state: State) -> float:
         """Return a measure of how far the loading work of `state` is above the prescribed work.
 
-        It has the sign of the difference. The work grows as δ² to δ^2.5 with the indentation δ, so
-        its power 0.4 is nearly linear in δ.
+        The result is (W/W₀)^0.4 − 1 with the loading work W and the prescribed work W₀. W grows
+        with the indentation δ as δ² to δ^2.5, so the result is nearly linear in δ.
         """
         work = state.loading_work
         return math.copysign((abs(work) / self._work) ** 0.4, work) - 1

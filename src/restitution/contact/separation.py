@@ -36,7 +36,7 @@ _STEPS_OF_RECOVERY = 8  # smallest number of steps into which the elastic recove
 # punch has the contact area of the present state.
 _STEPS_OF_TENSION = {"crack-closure": 32, "pohrt-popov": 16}
 _FINEST = 400  # the shortest step is the pull-off displacement of this punch divided by _FINEST
-_REFINEMENTS = (1, 2, 4)  # multiply the number of steps in turn until the tolerance is met
+_REFINEMENTS = (1, 2, 4)  # factors of the number of steps, tried in turn to meet the tolerance
 
 # If the error due to the steps is below this fraction of the surface energy (work of adhesion times
 # contact area), the error due to the grid is larger (see the module `collision`). Finer steps are
@@ -45,13 +45,13 @@ _SMALL = {"crack-closure": 0.005, "pohrt-popov": 0.0}
 _MOST_STEPS = 3000  # steps after which unloading counts as not converged
 
 # Late release of nodes loses work (see the top of this file). The unloading work is computed from
-# the forces after each release. To first order, it is therefore not reduced by this loss. Its error
-# is estimated as this fraction of the lost work. In a comparison with ten times finer steps, the
-# fraction was below 0.1 with `crack-closure` and below 1/3 with `pohrt-popov`, which releases nodes
-# in larger jumps. The values here are 1.5 times these limits.
+# the forces after each release, so to first order this loss does not reduce it. The remaining error
+# of the unloading work is estimated as this fraction of the lost work. In a comparison with ten
+# times finer steps, the fraction was below 0.1 with `crack-closure`. It was below 1/3 with
+# `pohrt-popov`, which releases nodes in larger jumps. The values here are 1.5 times 0.1 and 1/3.
 _LATENESS = {"crack-closure": 0.15, "pohrt-popov": 0.5}
 # For cohesive contacts, the tolerance of the energy balance of a step (`accuracy` in
-# `cohesive_path`), as a fraction of the tolerance of the restitution.
+# `cohesive_path`), as a fraction of the tolerance of COR.
 _UNACCOUNTED = 0.1
 # Relative error of the adhesive loss of cohesive contacts on the coarsest grid that is allowed
 # (docs/adhesion.md).
@@ -84,9 +84,11 @@ def separate(
 
     If `state` is already without contact, it is the only state. `tolerance` is the error of the
     coefficient of restitution that the steps may cause. If the estimated error is larger, unloading
-    is repeated with 2 and finally 4 times as many steps. `known` may be the states of another
-    unloading of the same contact, which began at a smaller indentation. If no node has yielded, the
-    remaining states are taken from `known` as soon as the force agrees with that of `known`. Raises
+    is repeated with 2 and finally 4 times as many steps.
+
+    `known` are states of another unloading of the same contact, which began at a smaller
+    indentation; it can be empty. If no node has yielded, unloading ends as soon as the force agrees
+    with that of `known`. The remaining states are then taken from `known`. Raises
     `NotConvergedError` if the bodies do not separate.
     """
     for finer in _REFINEMENTS:
@@ -95,8 +97,8 @@ def separate(
         returned, given = separation.unloading_work, state.loading_work
         # COR is e = sqrt(W_u/W_l) with the works of unloading and loading, so the errors satisfy
         # 2 de/e = dW_u/W_u + dW_l/W_l. If the pair sticks, e = 0 and the number of steps does not
-        # matter. Finer steps do not reduce the part of the error that is due to the loading work,
-        # so at most half of the tolerance is reserved for this part.
+        # matter. Finer steps do not reduce the error due to the loading work. So this error counts
+        # at most as half of the tolerance.
         if returned <= 0 or given <= 0:
             break
         half = 0.5 * math.sqrt(returned / given)
@@ -135,9 +137,9 @@ def _unload(
         if state.force < 0.1 * abs(punch_force):
             longest = min(longest, shortened)
         elif previous is not None:
-            # End the step before the force reaches zero, because tension requires shorter steps. In
-            # a Hertz-like recovery (F ∝ δ^1.5), the force divided by its slope is two thirds of the
-            # way to zero force. The factor 1.3 extends the step to 87 % of the way.
+            # End the step before the force reaches zero, because steps under tension must be
+            # shorter. In a Hertz-like recovery (F ∝ δ^1.5), a step of force/slope covers two thirds
+            # of the way to zero force. The factor 1.3 extends the step to 87 % of the way.
             slope = (previous.force - state.force) / (previous.indentation - state.indentation)
             if slope > 0:
                 longest = min(longest, max(1.3 * state.force / slope, shortened))
@@ -151,7 +153,7 @@ def _unload(
         )
         late = _late_force(new)
         if new.contact_nodes == 0:
-            # Pull-off lies within this step: shorten it until it is at most `reach`/`_FINEST`.
+            # Pull-off lies within this step. Shorten the step to locate pull-off more closely.
             if step > reach / _FINEST:
                 step /= 4
                 continue
@@ -170,7 +172,7 @@ def _unload(
     raise NotConvergedError(
         f"the bodies have not separated after {_MOST_STEPS} steps of unloading (indentation "
         f"{1e9 * state.indentation:.4g} nm, force {state.force:.3g} N); check work_of_adhesion "
-        f"({contact.work_of_adhesion:g} J/m2), or increase the tolerance of the restitution"
+        f"({contact.work_of_adhesion:g} J/m2), or increase the tolerance of COR"
     )
 
 
@@ -184,14 +186,14 @@ def separation_of(path: list[State]) -> Separation:
     trapezoid = -float(np.trapezoid(force, depth))
     late = -float(np.dot([_late_force(state) for state in path[1:]], np.diff(depth)))
     # The energy that the bodies lose along the path must equal the work of the force. In each step,
-    # the force falls linearly to its value before the release of nodes. `trapezoid` uses the value
-    # after the release instead, so it exceeds this work by `late`.
+    # the force falls linearly and then jumps up when nodes are released. `trapezoid` uses the force
+    # after the jump instead of the force before it, so it exceeds the work by `late`.
     unaccounted = (start.loading_work - end.loading_work) - (trapezoid - late)
     curve = unloading_curve(path)
     found = curve.work()
     # Unloading returns at most the elastic energy.
     work = min(found, start.stored_energy) if curve.balanced else found
-    # Difference between the work of the curve and the work of the states.
+    # Unloading work from the curve minus unloading work from the forces of the states.
     scatter = work - trapezoid if curve.balanced else 0.0
     return Separation(
         unloading_work=work,
@@ -257,7 +259,7 @@ def _late_force(state: State) -> float:
 
 
 def _plan(state: State, tolerance: float) -> tuple[float, float]:
-    """Estimate the elastic recovery (m) and the largest allowed `_late_force` (N)."""
+    """Estimate the depth (m) of elastic recovery, and the largest allowed `_late_force` (N)."""
     stored, adhesion = state.stored_energy, state.contact.work_of_adhesion * state.contact_area
     # The elastic recovery is estimated in two ways, and the smaller value is used. The first
     # estimate belongs to a flat punch with the same area and stored energy. The second one belongs
@@ -271,10 +273,11 @@ def _plan(state: State, tolerance: float) -> tuple[float, float]:
     # For COR below 0.05, the value at COR = 0.05 is used.
     work = max(state.loading_work, 0.05 * stored)
     restitution = math.sqrt(max(stored - adhesion, 0.0) / work)
-    # With the loading work W_l, dCOR = dW/(2 W_l COR). If dCOR is the tolerance, the error of the
-    # work may be dW = 2 W_l COR dCOR. Half of dW is reserved for the error of the loading work.
+    # With the loading work W_l, dCOR = dW/(2 W_l COR). If dCOR is the tolerance, the allowed error
+    # of the work is dW = 2 W_l COR dCOR. Half of dW is reserved for the error of the loading work.
     allowed = 1.0 * tolerance * max(restitution, 0.05) * work
-    # Forces at balances do not depend on how late nodes are released, so they need no limit.
+    # Where balances (G equals the work of adhesion) are reliable, the work is computed from them. A
+    # late release of nodes then does no harm, so `_late_force` needs no limit.
     if balances_are_reliable(state):
         return recovery, math.inf
     return recovery, allowed / (_LATENESS[state.contact.detachment] * recovery)

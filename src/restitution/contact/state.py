@@ -195,7 +195,7 @@ class State:
 
 
 def _joined(labels: NDArray[np.int32], count: int) -> NDArray[np.int32]:
-    """Return the patch number of each label; a patch may continue across the grid edges."""
+    """For each label, return the number of its patch, which can continue across the grid edges."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 

@@ -18,14 +18,13 @@ from restitution.contact.state import Array, State
 from restitution.numerics.quadrature import integrate_curve
 
 _FEW_NODES = 10  # below this number of contact nodes, the mean of G along the edge is unreliable
-_SMOOTHED = 11  # parabolas smooth the force; each is fitted to this number of points
+_SMOOTHED = 11  # number of points to which each parabola that smooths the force is fitted
 
 # A change of the force between two points is a jump if it exceeds this fraction of the largest
 # tension.
 _JUMP = 0.1
-# Smallest decrease of the indentation from the last balance to separation, as a fraction of the
-# decrease from the beginning of unloading to the last balance. It keeps the last two points of the
-# curve apart.
+# The last two points of the curve are the last balance and separation. To keep them apart, the
+# indentation falls between them by at least this fraction of its decrease up to the last balance.
 _END = 1e-3
 # Two forces at one indentation count as equal if their difference is at most this fraction of the
 # largest tension or of the force, whichever is larger. Balances scatter by about this fraction.
@@ -37,10 +36,10 @@ class UnloadingCurve:
     """Force (N) against decreasing indentation (m), shape (points,).
 
     If `balanced`, the first point is the state at which unloading begins, and the other points are
-    the balances of the contact areas. Balances are free of the jumps of the force that the release
-    of nodes causes. If not `balanced`, for example with `pohrt-popov`, the points are all states.
-    `fixed` means that the contact area is fixed between the first two points, so that the force is
-    linear between them.
+    the balances of the contact areas (see the top of this file). Balances do not jump when nodes
+    are released; the force of the states does. If not `balanced`, for example with `pohrt-popov`,
+    the points are all states. `fixed` means that the contact area is fixed between the first two
+    points, so that the force is linear between them.
     """
 
     indentation: Array
@@ -83,9 +82,9 @@ class UnloadingCurve:
 def unloading_curve(path: list[State]) -> UnloadingCurve:
     """Return the curve of a `path` from `separate`.
 
-    Each contact area gives one point, its balance. If the balance is unknown, or if the contact
-    area has fewer than `_FEW_NODES` nodes, all states with this area are used instead. On a grid
-    where balances are not reliable, the points are all states of the path.
+    Each contact area gives one point, its balance (see the top of this file). If the balance is
+    unknown, or if the contact area has fewer than `_FEW_NODES` nodes, all states with this area are
+    used instead. On a grid where balances are not reliable, the points are all states of the path.
     """
     states = [(state.indentation, state.force) for state in path]
     balances = [state.balance for state in path[1:]]
@@ -158,7 +157,7 @@ class SharedUnloading:
 
     @classmethod
     def of(cls, state: State, known: Sequence[State]) -> SharedUnloading | None:
-        """Return the `known` states if unloading from `state` can join them, otherwise None."""
+        """Return the `known` states if unloading from `state` can pass through them, or None."""
         if (
             not known
             or known[0].contact is not state.contact
@@ -171,7 +170,7 @@ class SharedUnloading:
         return cls(known, curve) if curve.balanced and balances_are_reliable(state) else None
 
     def agrees(self, state: State) -> bool:
-        """Whether the balance that `state` stores lies on the known unloading curve."""
+        """Whether `state.balance`, a force at an indentation, lies on the known unloading curve."""
         if state.balance is None:
             return False
         (at, force), x, F = state.balance, self.curve.indentation, self.curve.force

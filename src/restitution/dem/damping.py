@@ -1,8 +1,8 @@
 """Damping parameters with which simple contact laws have a given coefficient of restitution e.
 
-A linear spring and dashpot without tension has the equation x″ = −max(ω²x + 2ζωx′, 0) for the
-overlap x, with the natural frequency ω and the damping ratio ζ. The contact ends when the force
-returns to zero. At this time t after first touch, ω(1 − ζ²)^½ t = 2 arccos ζ, and therefore
+The overlap x of a linear spring and dashpot without tension obeys x″ = −max(ω²x + 2ζωx′, 0). Here ω
+is the natural frequency and ζ the damping ratio. The contact ends when the force returns to zero.
+At this time t after first touch, ω(1 − ζ²)^½ t = 2 arccos ζ, and therefore
 
     e = exp(−2ζ arccos ζ/(1 − ζ²)^½).
 
@@ -51,7 +51,7 @@ _LARGEST_DAMPING = 20.0
 
 
 def dashpot_restitution(ratio: float) -> float:
-    """Return e of a linear spring and dashpot without tension with the damping ratio ζ."""
+    """Return e of a linear spring and dashpot without tension; `ratio` is the damping ratio ζ."""
     if ratio == 1:
         return math.exp(-2)
     root = math.sqrt(abs(1 - ratio**2))
@@ -60,7 +60,7 @@ def dashpot_restitution(ratio: float) -> float:
 
 
 def dashpot_ratio(restitution: float) -> float:
-    """Return the damping ratio ζ of a spring and dashpot without tension that has a given e."""
+    """Return the damping ratio ζ that a spring and dashpot without tension need for a given e."""
     return _root(dashpot_restitution, restitution, _LARGEST_DAMPING)
 
 

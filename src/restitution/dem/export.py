@@ -37,9 +37,9 @@ def export(laws: Sequence[Law], code: str, velocity: float | None) -> dict[str, 
     Returns the text of each file, by file name.
 
     All codes except `csv` use one coefficient of restitution for each pair, so they need the
-    `velocity` (m/s) at which this coefficient holds. Raises `CaseError` if the velocity is missing,
-    if a pair that the code needs has no law, or if the code does not accept a value of a pair.
-    Raises `DomainError` for a velocity outside the computed velocities.
+    `velocity` (m/s) at which this coefficient holds. Raises `CaseError` if the velocity or a
+    required law is missing, or if the code does not accept a value of a pair. Raises
+    `DomainError` for a velocity outside the computed velocities.
     """
     table = pair_table(laws)
     if code == "csv":

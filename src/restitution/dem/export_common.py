@@ -79,10 +79,10 @@ class Pair:
 
     @property
     def twin(self) -> tuple[float, float]:
-        """E (Pa) and ν with which two bodies of one material have the E* and G* of this pair.
+        """E (Pa) and ν of a material that, used for both bodies, gives the E* and G* of this pair.
 
         E and ν follow from E* = E/(2(1 − ν²)) and G* = E/(4(2 − ν)(1 + ν)). ν lies between the
-        values of the two bodies.
+        Poisson's ratios of the two materials of the pair.
         """
         k = self.shear_modulus / self.law.contact_modulus
         nu = min(max((1 - 4 * k) / (1 - 2 * k), 0.0), 0.5)

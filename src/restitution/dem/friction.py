@@ -2,10 +2,11 @@
 
 DEM codes have one tangential spring per contact, with the stiffness of a contact that sticks
 (Mindlin 1949: 8 G* a, with the contact radius a and 1/G* = Σ 2 (2 − ν)(1 + ν)/E). In a real contact
-the edge slides first, so the mean stiffness during an impact is smaller. With 0.8 times Mindlin's
-stiffness, the tangential restitution of elastic spheres in LAMMPS (`mindlin_rescale/force`) differs
-from the model `laws.oblique` by at most 0.03, for ν from 0 to 0.45 and any angle. With the full
-stiffness, the tangential restitution is up to 0.13 too large (docs/studies/oblique_stiffness.py).
+the edge slides first, so the mean stiffness during an impact is smaller. The tangential restitution
+of elastic spheres in LAMMPS (`mindlin_rescale/force`) was compared with the model `laws.oblique`,
+for ν from 0 to 0.45 and any angle (docs/studies/oblique_stiffness.py). With 0.8 times Mindlin's
+stiffness, the difference is at most 0.03. With the full stiffness, the tangential restitution is up
+to 0.13 too large.
 """
 
 from __future__ import annotations

@@ -65,7 +65,7 @@ class Bodies:
     E: float
     m: float
     p_y: float  # pressure of a fully plastic contact; infinite for elastic bodies
-    onset: float  # largest pressure at first yield; infinite if the bodies are purely elastic
+    onset: float  # peak of the contact pressure at first yield; infinite for elastic bodies
     w: float
     wall: int | None  # which body is flat (0 or 1); None for two spheres
     equal: bool  # two identical spheres
@@ -136,7 +136,7 @@ class Bodies:
 
     @cached_property
     def sticking_velocity(self) -> float:
-        """Sticking velocity V_s (m/s); zero without adhesion."""
+        """Impact velocity V_s (m/s) up to which elastic bodies stick; zero without adhesion."""
         return 0.0 if self.w == 0 else float(self.sticking.sticking_velocity(self.m))
 
     @cached_property
@@ -168,7 +168,7 @@ class Bodies:
         return self.strengths[self.wall] == self.strength
 
     def velocity(self, indentation: Array) -> Array:
-        """Impact velocity (m/s) that reaches `indentation` (m).
+        """Impact velocity (m/s) at which the maximum indentation is `indentation` (m).
 
         The velocity follows from Thornton and Ning or, for elastic bodies, from Hertz.
         """

@@ -2,16 +2,17 @@
 
     e² = Σ c_k L^k − s/V²,   L = ln(V/V₀)/w in [−1, 1]
 
-V₀ is the geometric mean of the lowest and highest velocity, and w scales ln(V/V₀) to the interval
-[−1, 1]. The term s/V² describes an energy loss by adhesion that is the same at every velocity. For
-an elastic pair, s is the square of the sticking velocity (Thornton & Ning 1998). The polynomial
-describes the loss by yielding. Low velocities at which nothing is lost (e = 1) or the pair sticks
-(e = 0) are excluded from the fit, except the highest of these velocities.
+V₀ is the geometric mean of the lowest and the highest velocity of the fit, and w scales ln(V/V₀) to
+the interval [−1, 1]. The term s/V² describes an energy loss by adhesion that is the same at every
+velocity. For an elastic pair, s is the square of the sticking velocity (Thornton & Ning 1998). The
+polynomial describes the loss by yielding. At low velocities, a pair without adhesion can lose
+nothing (e = 1), and a pair with adhesion can stick (e = 0). Of these velocities, the fit uses only
+the highest.
 
 The fit is linear least squares in e². The error of the fit between the points is estimated from two
 values: the largest residual, and the largest leave-one-out residual (as in PRESS, Allen 1974, but
-with the maximum instead of the sum). The larger value is the estimate. The polynomial has the
-lowest degree whose error is below 0.001 or at most 1.1 times the smallest error of all degrees.
+with the maximum instead of the sum). The larger value is the estimate. The degree of the polynomial
+is the lowest degree with a small error: below 0.001, or at most 1.1 times the smallest error.
 """
 
 from __future__ import annotations
@@ -25,13 +26,18 @@ from restitution.laws.law import Array, CompactFit, Law
 _HIGHEST_DEGREE = 8
 _FEWEST = 4  # smallest number of points for a fit
 _NO_LOSS = 1e-3  # a point counts as lossless if 1 − e² is below this value
-_SIMPLER = 1.1  # a lower degree is preferred if its error is at most 1.1 times the smallest error
-_GOOD = 1e-3  # a lower degree is always preferred if its error in e is below this value
+# The fit uses the lowest degree whose error in e is at most `_GOOD`, or at most `_SIMPLER` times
+# the smallest error of all degrees.
+_SIMPLER = 1.1
+_GOOD = 1e-3
 _COUNTS = 0.01  # at the velocity `adhesive_below`, adhesion lowers e² by this value
 
 
 def compact_fit(law: Law) -> CompactFit | None:
-    """Fit the compact formula to the resolved points of `law`; None if there are too few points."""
+    """Fit the compact formula to the points of `law` that the grid resolves.
+
+    Returns None if there are too few points.
+    """
     V, ratio = law.column("velocity", resolved=True), law.column("ratio", resolved=True)
     lossless = int(np.append(ratio <= 1 - _NO_LOSS, True).argmax())  # number of lossless points
     # Keep the last lossless (or sticking) point, because it fixes the polynomial at the low end.

@@ -43,7 +43,8 @@ _AT_FORCE_ZERO = "separation, where the force is back to zero"
 def fitted_laws(law: Law, begin: Begin | None = None) -> tuple[FittedLaw, ...]:
     """Fit all applicable force laws to `law`.
 
-    The result is empty if COR is 1 at all resolved points, or if no point is resolved.
+    The fits use only the points that the grid resolves. The result is empty if there are no such
+    points, or if COR is 1 at all of them.
     """
     if _seen(law, "restitution").min(initial=1.0) > 1 - LOSS:
         return ()
@@ -145,7 +146,8 @@ def _adhesion_of(law: Law, V_s: float) -> Parameters:
 
 def _walton_braun(law: Law) -> FittedLaw:
     k1 = _stiffness(law, exponent=1.0)
-    # The hardening `scale` adds k1 to the unloading stiffness at the highest velocity.
+    # Hardening increases the unloading stiffness with the velocity. With the hardening `scale`, the
+    # increase at the highest velocity is k1.
     scale = math.sqrt(k1 / law.mass) / law.highest
 
     def springs(x: Array) -> Parameters:
@@ -233,7 +235,7 @@ def _fitted_springs(
     """Fit a spring model to COR.
 
     `springs` computes the parameters of the model, in the order of the arguments of `theory`, from
-    an array of unknowns. The fit varies the unknowns, beginning with `start` and not below `low`.
+    an array of unknowns. The fit begins with the values `start` and keeps them at or above `low`.
     `words` are passed to `_judged`.
     """
 
@@ -277,15 +279,15 @@ def _mdr(law: Law) -> FittedLaw | None:
 
 
 def _seen(law: Law, name: str) -> Array:
-    """Values of the field `name` at the resolved points."""
+    """Values of the field `name` at the points that the grid resolves."""
     return law.column(name, resolved=True)
 
 
 def _stiffness(law: Law, exponent: float) -> float:
-    """Stiffness k₁ (N/mⁿ) of the spring with the loading curve k₁δⁿ, where n is `exponent`.
+    """Stiffness k₁ (N/mⁿ) of a spring with the loading curve F = k₁δⁿ, where n is `exponent`.
 
-    At each resolved point, k₁ is chosen such that the spring has the maximum force F and the
-    loading work W of the point: F^{1+1/n} = (n + 1) k₁^{1/n} W. The result is the geometric mean.
+    At each resolved point, k₁ follows from the maximum force F and the loading work W:
+    F^{1+1/n} = (n + 1) k₁^{1/n} W. The result is the geometric mean over the points.
     """
     force, work, n = _seen(law, "force"), _seen(law, "loading_work"), exponent
     some = (force > 0) & (work > 0)
@@ -315,10 +317,10 @@ def _least_squares(
     low: list[float] | None = None,
     high: list[float] | None = None,
 ) -> Array:
-    """Minimise the sum of squares of `misfit`, whose kinks can lead to several minima.
+    """Minimise the sum of squares of `misfit`, with searches from several starting points.
 
-    The search runs from several starting points. A single parameter needs only one starting point,
-    because COR is monotone in this parameter.
+    `misfit` is not smooth, so the sum can have several minima. A single parameter needs only one
+    starting point, because COR (or the force) either always increases or always decreases with it.
     """
     from scipy.optimize import least_squares
 

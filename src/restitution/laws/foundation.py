@@ -1,4 +1,4 @@
-"""A one-dimensional foundation with the normal and tangential response of a stored contact.
+"""A row of springs (a foundation) that replaces a contact whose force curves are stored.
 
 Springs stand side by side on a line that is symmetric about its middle. The two springs at the
 distance x from the middle count as one spring here. This spring touches when the indentation
@@ -18,9 +18,9 @@ Solids Struct. 35, 2349–2378).
 
 A contact that has yielded responds to small motions elastically, as on its unloading curve. At
 every depth of loading, the normal loads of the springs are therefore computed from the unloading
-curve that starts at this depth. Springs that already touch keep their tangential displacement. This
-extension is not in the cited literature. `tangential_error` estimates the error of the tangential
-force of the foundation.
+curve that starts at this depth. When the depth increases, springs that already touch keep their
+tangential displacement. This extension is not in the cited literature. `tangential_error` estimates
+the error of the tangential force of the foundation.
 """
 
 from __future__ import annotations
@@ -111,7 +111,7 @@ def has_yielded(law: StoredForce, deepest: float) -> bool:
 
 
 def _touching(law: StoredForce, depth: float, contact_modulus: float) -> tuple[Array, Array]:
-    """Return indentations (m) on the unloading curve from `depth` (m), with contact radii (m).
+    """Return indentations (m) on the unloading curve from `depth` (m), and their contact radii (m).
 
     The radii are made to increase with the indentation, so that every spring touches once. They
     are then scaled so that the loads of the springs add up to the force.

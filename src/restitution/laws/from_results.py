@@ -146,7 +146,7 @@ def _read(out: Path) -> RunResults:
 
 
 def _error_includes(diagnostics: Mapping[str, object]) -> str:
-    """State which parts of the error of COR the `error` of a point includes and excludes."""
+    """State in words what `Point.error` includes, and what it does not include."""
     includes = diagnostics.get("total_error_includes") or "solver"
     excludes = diagnostics.get("total_error_does_not_include") or "anything else"
     model = diagnostics.get("largest_model_error")
@@ -192,7 +192,7 @@ def _error(row: _Row, *, asked: bool) -> float:
 
     If the case `asked` for the total error but the row has none, a part of the error is unknown.
     The result is then the largest possible error of COR. If the case did not ask for the total
-    error, the result is the sum of the known parts.
+    error, the result is the root sum of squares of the known parts.
     """
     if not math.isnan(known := row.get("total_error", math.nan)):
         return known

@@ -2,10 +2,10 @@
 
 The bodies meet without spin, at the angle θ from the normal, with the tangential velocity V_t and
 the normal velocity V_n. e is the normal restitution, µ the coefficient of friction, E* the contact
-modulus and G* the tangential modulus. In the foundation (`foundation`), a spring that slides has
-the displacement µ (E*/G*)(δ − g), where δ is the indentation and g the indentation at which this
-spring touches. The spring continues to slide as long as the velocity U of the contact point exceeds
-the rate of this displacement:
+modulus and G* the tangential modulus. The contact is modelled as a row of springs (`foundation`). A
+spring that slides has the displacement µ (E*/G*)(δ − g), where δ is the indentation and g the
+indentation at which this spring touches. The spring continues to slide as long as the velocity U of
+the contact point exceeds the rate of this displacement:
 
     U > µ (E*/G*) dδ/dt.
 
@@ -15,8 +15,8 @@ becomes
 
     tan θ ≥ µ [(7/2)(1 + e) − e E*/G*].
 
-For e = 1 this is the condition ψ₁ ≥ 4χ − 1 of Maw, Barber and Fawcett (1976, Wear 38, 101–114),
-with ψ₁ = (G*/E*) tan θ/µ and χ = (7/4) G*/E*. The same derivation holds for e < 1, because springs
+For e = 1 this is the condition ψ₁ ≥ 4χ − 1 of Maw, Barber and Fawcett (1976, Wear 38, 101–114).
+Here ψ₁ = (G*/E*) tan θ/µ and χ = (7/4) G*/E*. The same derivation holds for e < 1, because springs
 unload with the stiffness E*, whether or not the contact has yielded.
 """
 
@@ -40,8 +40,8 @@ def full_slip_angle(friction: float, restitution: float, modulus_ratio: float) -
         Maw, Barber and Fawcett (1976) for e = 1. The top of this module derives it for e < 1.
     """
     least = 3.5 * (1 + restitution) - restitution / modulus_ratio
-    # If the dimensionless angle of impact ψ₁ is below 1, the contact sticks at first (Maw, Barber
-    # and Fawcett). So full slip needs ψ₁ ≥ 1.
+    # If ψ₁ = (G*/E*) tan θ/µ is below 1, the contact sticks at first (Maw, Barber and Fawcett). So
+    # full slip also needs ψ₁ ≥ 1.
     return math.atan(friction * max(least, 1 / modulus_ratio))
 
 

@@ -9,12 +9,13 @@ every velocity. For an elastic pair, s is the square of the sticking velocity (T
 negative, or if the pair does not adhere, s is zero. The pair rebounds above the velocity at which
 the interpolated ratio is zero.
 
-The error estimate at the middle of an interval is 1.5 times the larger leave-one-out residual of
-the two end points, and at least the difference between the cubic and linear interpolation. If the
-curve has only two points, the estimate is the difference between their values of q. Towards the end
-points, the estimate decreases to zero as 2 (t (1 − t))^½, where t (0 to 1) is the position of ln V
-in the interval. The standard deviation of a random walk with both ends fixed has the same form. For
-rough surfaces, docs/dem.md states how often the true error is within the estimate.
+The error estimate is the larger of two values. The first value is based on the leave-one-out
+residuals of the two computed points next to V. In the middle between these points, it is 1.5 times
+the larger residual. (If the curve has only two points, it is the difference between their values of
+q.) Towards the points, it decreases to zero as 2 (t (1 − t))^½, where t (0 to 1) is the position of
+ln V between them. The standard deviation of a random walk with both ends fixed has the same form.
+The second value is the difference between the cubic and the linear interpolation. For rough
+surfaces, docs/dem.md states how often the true error is within the estimate.
 """
 
 from __future__ import annotations
@@ -27,7 +28,8 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-_SAFETY = 1.5  # ratio of the error estimate to the leave-one-out residual
+# Ratio of the error estimate in the middle of an interval to the leave-one-out residual.
+_SAFETY = 1.5
 
 
 class RatioCurve:

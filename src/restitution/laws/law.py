@@ -64,9 +64,10 @@ class Particle(_Stored):
 class Point(_Stored):
     """The result at one impact velocity, in SI units.
 
-    `ratio` is W_u/W_l, the unloading work divided by the loading work, and negative if the pair
-    sticks. `error` is the error of `restitution`. `indentation` and `force` are the maxima during
-    the impact. `resolved` says whether the grid is fine enough for the contact and its adhesion.
+    `ratio` is W_u/W_l, the unloading work divided by the loading work. It is zero or negative if
+    the pair sticks. `error` is the error of `restitution`. `indentation` and `force` are the maxima
+    during the impact. `resolved` says whether the grid is fine enough for the contact and its
+    adhesion.
     """
 
     velocity: Positive
@@ -90,14 +91,14 @@ class CompactFit(_Stored):
     """Fit e² = Σ c_k L^k − s/V², L = ln(V/V₀)/w, between `lowest` and `highest` velocity.
 
     `coefficients` are c_k, `centre` is V₀, `width` is w and `adhesion` is s (m²/s²). All velocities
-    are in m/s. e = 0 where the formula gives a negative e² and for V ≤ `sticks_below`; e = 1 for
-    V ≤ `elastic_below`. At `adhesive_below`, adhesion lowers e² by 0.01. The fit uses the
-    resolved points, at which the grid resolves the contact. `lowest` and `highest` are the
-    velocities of the first and the last resolved point. Outside this range the fit has no value.
+    are in m/s. e is 0 for V ≤ `sticks_below`, and where the formula gives a negative e². e is 1 for
+    V ≤ `elastic_below`. At `adhesive_below`, adhesion lowers e² by 0.01.
 
-    `worst` is the largest difference between fitted and computed e at the resolved points.
-    `between` estimates the largest error between these points. It is the larger of `worst` and the
-    largest leave-one-out residual of e.
+    The fit uses only the points at which the grid resolves the contact. `lowest` and `highest` are
+    the lowest and the highest velocity of these points. Outside this range the fit has no value.
+    `worst` is the largest difference between fitted and computed e at these points. `between`
+    estimates the largest error between these points. It is the larger of `worst` and the largest
+    leave-one-out residual of e.
     """
 
     coefficients: tuple[float, ...]
@@ -134,9 +135,9 @@ class FittedLaw(_Stored):
     """A force law of DEM codes, fitted to the computed COR.
 
     The keys of `parameters` include the units. `restitution` is the COR of the force law at the
-    velocities of the points; it is None where the force law has no solution, and outside the
-    resolved velocities (`Law.fitted_range`). `rms` and `worst` are the root mean square and the
-    largest difference from the computed COR at the resolved points.
+    computed velocities. It is None where the force law has no solution, and outside
+    `Law.fitted_range`. `rms` is the root mean square difference from the computed COR, and `worst`
+    the largest difference. Both use only the points at which the grid resolves the contact.
     """
 
     name: str
@@ -173,9 +174,10 @@ class Law(_Stored):
     """Coefficient of restitution against impact velocity for one pair, in SI units.
 
     `radius`, `contact_modulus` and `mass` are R*, E* and m*. `friction` is the coefficient of
-    friction of the case, or None; e does not depend on friction. `yield_velocity` and
-    `sticking_velocity` are those of the smooth bodies. `sticks_below` is the velocity above which
-    this pair rebounds. It is None if the pair rebounds at every computed velocity, or at none.
+    friction of the case, or None; e does not depend on friction. Smooth bodies yield above
+    `yield_velocity`, and smooth elastic bodies stick up to `sticking_velocity`. `sticks_below` is
+    the velocity above which this pair rebounds. It is None if the pair rebounds at every computed
+    velocity, or at none.
     """
 
     title: str
@@ -223,7 +225,10 @@ class Law(_Stored):
 
     @property
     def fitted_range(self) -> tuple[float, float] | None:
-        """The lowest and the highest resolved velocity (m/s), between which fits are valid."""
+        """The lowest and the highest velocity (m/s) at which the grid resolves the contact.
+
+        Fits are valid between these velocities. None if the grid resolves no contact.
+        """
         V = self.column("velocity", resolved=True)
         return (float(V[0]), float(V[-1])) if V.size else None
 
@@ -234,7 +239,10 @@ class Law(_Stored):
         return np.asarray((low * (1 - _SAME) <= V) & (high * (1 + _SAME) >= V))
 
     def column(self, name: str, *, resolved: bool = False) -> Array:
-        """Values of the field `name` at all points or at the resolved points, shape (points,)."""
+        """Values of the field `name` at the points, shape (points,).
+
+        If `resolved` is true, only points at which the grid resolves the contact are included.
+        """
         points = [point for point in self.points if point.resolved or not resolved]
         return np.array([getattr(point, name) for point in points], dtype=float)
 

@@ -92,7 +92,7 @@ def _of_mixture(folder: Path) -> list[Path]:
 def write_theories(velocities: Array, found: list[Theory], out: Path) -> Path:
     """Write `theory.csv` into `out`, which must be new or empty. Raises `OutputError`.
 
-    `found` contains the restitution of each theory at `velocities` (m/s).
+    `found` contains the COR of each theory at `velocities` (m/s).
     """
     make_folder(out)
     rows = [

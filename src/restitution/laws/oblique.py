@@ -1,4 +1,4 @@
-"""Oblique impact: tangential rebound, spin and friction loss from the stored normal curves.
+"""Oblique impact: tangential rebound, spin and friction loss from stored normal forces.
 
 The normal motion does not depend on the tangential motion. It equals the motion in a head-on impact
 at the normal velocity (`time_integration`). The contact point slides with the velocity
@@ -9,14 +9,14 @@ for solid spheres (moment of inertia I = 2/5 m R²) with the radii R_i, the mass
 ω_i. Here v_t is the relative tangential velocity of the centres, m* the reduced mass and T the
 tangential force. A spin is positive in the direction in which friction turns a sphere without spin.
 T follows from a one-dimensional foundation of springs with constant friction µ (`foundation`). If
-all springs slide to the end, the impulse of T is µ (1 + e) m* V_n for every force law, with the
-normal impact velocity V_n and the normal restitution e.
+all springs slide to the end, the impulse of T is µ (1 + e) m* V_n for every force law. Here V_n is
+the normal impact velocity and e the normal restitution.
 
-To convert the error of the tangential law (`tangential_error`) to an error of the impulse of T, the
-motion is integrated again with a larger and a smaller tangential modulus. If the contact has
-yielded, the error of the impulse has a second part, which decreases to zero towards full slip. In
-full slip, the impulse is exact for bodies of equal materials. For unlike materials, the error has a
-third part, which is proportional to the impulse.
+The error of the impulse of T is the sum of three parts (`tangential_error` gives their sizes). For
+the first part, the motion is integrated again with a larger and a smaller tangential modulus. The
+second part exists if the contact has yielded. It decreases to zero towards full slip, in which all
+springs slide. The third part exists for unlike materials, and is proportional to the impulse. In
+full slip, the impulse is exact for bodies of equal materials.
 
 Neglected: the coupling of normal and tangential displacements of unlike materials, the torque about
 the normal, rolling friction, and elastic waves.
@@ -62,11 +62,12 @@ class ObliqueCollision:
             the impact (dimensionless); NaN for a head-on impact.
         rebound_angle: Angle of rebound of the centres from the normal (rad).
         spins: Angular velocities of the two bodies after the impact (rad/s); 0 for a wall.
-        tangential_restitution_error: Error of `tangential_restitution` due to the tangential law
-            (dimensionless); NaN for a head-on impact. The error of the normal forces is not
-            included.
-        rebound_angle_error: Error of `rebound_angle` due to the tangential law (rad).
-        spin_errors: Errors of `spins` due to the tangential law (rad/s).
+        tangential_restitution_error: Error of `tangential_restitution` due to the model of the
+            tangential force (dimensionless); NaN for a head-on impact. The error of the normal
+            forces is not included.
+        rebound_angle_error: Error of `rebound_angle` due to the model of the tangential force
+            (rad).
+        spin_errors: Errors of `spins` due to the model of the tangential force (rad/s).
         friction_loss: Energy lost to friction (J).
         normal_loss: Energy lost in the normal contact (J).
         sliding: Whether the whole contact slides from the beginning to the end.

@@ -1,29 +1,30 @@
-"""Error of the one-dimensional tangential law, from a comparison with boundary elements.
+"""Error of the tangential law, from a comparison with boundary elements.
 
-docs/oblique.md describes the comparison (`docs/studies/tangential.py` and `unlike.py`). For bodies
-of equal materials with Poisson's ratio 0, the law is exact with any roughness, as long as the
-bodies do not yield. Four effects cause an error:
+The tangential law is the tangential force of a row of springs (`foundation`). docs/oblique.md
+describes the comparison (`docs/studies/tangential.py` and `unlike.py`). For bodies of equal
+materials with Poisson's ratio 0, the law is exact with any roughness, as long as the bodies do not
+yield. Four effects cause an error:
 
 * Contact patches that are not round. A point load along x displaces the points of a circle around
   the load by different amounts. On the x axis, the displacement is 1 + χ times its mean over the
   circle. On the y axis, the displacement is 1 − χ times this mean. For equal materials with
   Poisson's ratio ν, χ = ν/(2 − ν). The law uses the mean, so its stiffness has an error of up to χ
   for a line contact. The patches of a rough contact are elongated in random directions, so the
-  error is inversely proportional to the square root of their number. On a surface with a lay (a
-  preferred direction) the patches are aligned, and the error decreases less.
+  error is inversely proportional to the square root of the number of patches. On a surface with a
+  lay (a preferred direction) the patches are aligned, and the error decreases less.
 * Yield. At nodes that have reached the pressure bound, the friction limit stays constant during
   further loading. In the law, the friction limits of all springs increase.
 * Few unloading curves. Between two unloading curves, the stiffness is interpolated.
 * Unlike materials. Pressure also moves the surfaces tangentially, in proportion to Dundurs' second
-  constant β. Without slip this motion adds no tangential force, by symmetry, and the stiffness
+  constant β. Without slip this motion adds no tangential force, by symmetry. The stiffness then
   grows only by about β²/3 (atanh(β)/β − 1 for a round punch; Spence 1968, Proc. R. Soc. A 305,
   55–80). But if the coefficient of friction µ is not large compared with |β|, the surfaces slip
   radially under pressure alone (Spence 1975, J. Elast. 5, 297–319). Friction that opposes this
   radial slip cannot also resist a tangential motion. The impulse of the law was compared with
-  solutions that include the radial slip. The difference is stated as the relative error of the
-  stiffness that causes the same difference of the impulse. This error is less than |β| if µ < |β|.
-  For larger µ, it is less than the larger of |β|³/µ² and β²/3. In full slip, the radial slip turns
-  the friction away from the direction of motion, so the impulse is smaller.
+  solutions that include the radial slip. The difference was converted to the relative error of the
+  stiffness that would change the impulse equally. This error is less than |β| if µ < |β|. For
+  µ > |β|, it is less than the larger of |β|³/µ² and β²/3. In full slip, the radial slip turns the
+  friction away from the direction of motion, so the true impulse is smaller than that of the law.
 """
 
 from __future__ import annotations
@@ -37,15 +38,15 @@ from restitution.contact.bodies import Pair
 from restitution.laws.foundation import has_yielded
 from restitution.laws.time_integration import StoredForce
 
-# All differences found in the comparison are within the errors that these constants give. The top
-# of this file defines χ and β.
+# With these constants, the error estimate is at least as large as every difference that was found
+# in the comparison with boundary elements. The top of this file defines χ and β.
 #
-# Relative error of the stiffness for ν = 0: the error of every contact, and the additional error of
-# a rough contact.
+# Relative errors of the stiffness for ν = 0: the first for every contact, the second in addition
+# for a rough contact.
 _NUMERICAL, _ROUGH = 0.005, 0.04
-# The relative error of the stiffness due to the shape of the patches is _SHAPE χ for up to _ALIGNED
-# patches. It decreases with the number of patches up to _INDEPENDENT patches and not further,
-# because additional patches are only fragments of larger ones.
+# Contact patches that are not round cause a relative error of the stiffness. This error is χ times
+# _SHAPE for up to _ALIGNED patches. With more patches it decreases, but not above _INDEPENDENT
+# patches, because additional patches are only fragments of larger ones.
 _SHAPE, _ALIGNED, _INDEPENDENT = 0.35, 4.0, 36.0
 # Relative errors of stiffness and impulse after yield. For rough contacts they are multiplied by
 # the largest ratio of the depths of two neighbouring unloading curves.
@@ -62,8 +63,9 @@ _SHALLOWEST = 0.2
 class TangentialError:
     """Relative errors of the tangential law (dimensionless).
 
-    `stiffness` is the error of the tangential stiffness. Far from full slip, the tangential impulse
-    has this error and the additional error `impulse`. In full slip it has the error `sliding`.
+    `stiffness` is the error of the tangential stiffness. `impulse` and `sliding` are additional
+    errors of the tangential impulse. The error `impulse` decreases to zero towards full slip. The
+    error `sliding` also remains in full slip.
     """
 
     stiffness: float

@@ -42,9 +42,9 @@ class Theory:
 def velocities_of(case: Case, law: Law | None = None) -> Array:
     """Velocities (m/s) at which theories are evaluated: those of `law`, or a range from the case.
 
-    If the case gives indentations or loads, the ends of the range are the velocities at which
-    smooth bodies reach the first and the last indentation or load. These velocities follow from
-    Thornton and Ning or, for elastic bodies, from Hertz. Raises `CaseError`.
+    If the case gives indentations or loads, the first and the last of them are converted to the
+    impact velocities of smooth bodies. The conversion uses the theory of Thornton and Ning or, for
+    elastic bodies, of Hertz. Raises `CaseError`.
     """
     if law is not None:
         return law.column("velocity")
@@ -58,9 +58,9 @@ def velocities_of(case: Case, law: Law | None = None) -> Array:
 def theories(case: Case, velocities: Array, law: Law | None = None) -> list[Theory]:
     """Evaluate every theory that applies to `case`, and the fits to `law`, at `velocities` (m/s).
 
-    The computed COR and the fits have values only at the velocities of the law. Outside its
-    resolved velocities, the fits are NaN. Raises `CaseError` if a density is missing, or if the law
-    belongs to another pair.
+    The computed COR and the fits have values only at the velocities of the law, and are NaN at
+    other velocities. The fits are also NaN outside `law.fitted_range`. Raises `CaseError` if a
+    density is missing, or if the law belongs to another pair.
     """
     V = np.asarray(velocities, dtype=float)
     found = [answer for answer in _answers(case, V) if isinstance(answer, Theory)]
@@ -73,11 +73,11 @@ def theories(case: Case, velocities: Array, law: Law | None = None) -> list[Theo
 def theory_lines(
     case: Case, velocities: Array, found: list[Theory]
 ) -> list[tuple[str, bool, Array, Array]]:
-    """Lines of a figure: name, whether it is a fit, velocities (m/s) and COR of each theory.
+    """Return a line of a figure for each theory in `found`, except for the computed points.
 
-    The theories are those of `found`. Closed forms are evaluated at many velocities between the
-    first and the last of `velocities`, and fits only at `velocities`. The computed points are left
-    out.
+    A line consists of the name, a flag (true for a fit), velocities (m/s) and COR. Closed forms are
+    evaluated at many velocities between the first and the last of `velocities`, and fits only at
+    `velocities`.
     """
     V = velocities
     if velocities.size > 1:
@@ -101,7 +101,10 @@ def left_out(case: Case, law: Law | None = None) -> dict[str, str]:
 
 
 def marks(case: Case) -> dict[str, float]:
-    """Yield velocity V_y and sticking velocity V_s (m/s) of the smooth bodies, where they exist."""
+    """Velocities (m/s) above which smooth bodies yield (V_y), and up to which they stick (V_s).
+
+    V_y is left out for elastic bodies, and V_s without adhesion.
+    """
     bodies = Bodies.of(case)
     found = {"V_y": bodies.yield_velocity, "V_s": bodies.sticking_velocity}
     return {name: value for name, value in found.items() if 0 < value < math.inf}
@@ -198,9 +201,10 @@ def _unresolved(law: Law) -> str:
 
 
 def _other_interface(bodies: Bodies, law: Law) -> str:
-    """State the yield pressure and the work of adhesion of `law`, each only if the case differs.
+    """State the yield pressure and the work of adhesion of `law` if they differ from the case.
 
-    `bodies` are the bodies of the case. The result is empty if both values agree.
+    `bodies` are the bodies of the case. Only values that differ are stated. The result is empty if
+    both values agree.
     """
     differing = []
     p_y = math.inf if law.yield_pressure is None else law.yield_pressure
@@ -239,7 +243,8 @@ def _dissipation(law: Law) -> float:
     def misfit(log_beta: float) -> float:
         return float(np.sum((Brilliantov(math.exp(log_beta)).restitution(V) - e) ** 2))
 
-    # At every velocity, e is nearly 1 for the first β and nearly 0 for the last β.
+    # Range of ln β in the search. At every velocity, e is nearly 1 at its lower end and nearly 0 at
+    # its upper end.
     first, last = math.log(1e-6 / law.highest**0.2), math.log(1e6 / law.lowest**0.2)
     steps = np.linspace(first, last, 200)
     best = int(np.argmin([misfit(step) for step in steps]))

@@ -5,7 +5,7 @@
 x'' is an acceleration; v and v' are the velocities before and after the impact. F follows the
 loading curve until the particles stop approaching. Then F follows the unloading curve from the
 largest indentation. The resulting e is an independent check of e = (W_u/W)^½, which a run computes
-from the works of unloading and loading, W_u and W. The time integration uses the unloading forces
+from the unloading work W_u and the loading work W. The time integration uses the unloading forces
 instead of W_u, and the equations of motion instead of the energy balance.
 
 The loading force is the derivative of a cubic Hermite spline through the stored loading work W. At
@@ -13,9 +13,10 @@ the stored depths, the slope of the spline is the stored force. The particles th
 approaching where W equals the initial kinetic energy, as the energy balance requires. If W
 increases about as a power of δ, the spline interpolates ln W against ln δ.
 
-Unloading curves are monotone cubics (PCHIP) and are stored for some depths only. Between two of
-these depths, F/F_max is interpolated as a function of (δ − δ_s)/(δ_max − δ_s). Here δ_max is the
-intermediate depth, F_max the loading force there, and δ_s the indentation at separation.
+Unloading curves are monotone cubics (PCHIP) and are stored for some depths only. Unloading from a
+depth δ_max between two of these depths uses an interpolation between their curves. The interpolated
+quantity is F/F_max as a function of (δ − δ_s)/(δ_max − δ_s). Here F_max is the loading force at
+δ_max, and δ_s is the indentation at separation.
 """
 
 from __future__ import annotations
@@ -43,7 +44,8 @@ from restitution.results.tables import damaged
 Force = Callable[[float], float]
 
 _RTOL = 1e-10
-# Because of integration errors, an impact may exceed the deepest stored depth by this fraction.
+# Integration errors can carry an impact beyond the deepest stored depth. An excess of up to this
+# fraction of the depth is accepted.
 _SLACK = 1e-3
 # ln W is interpolated against ln δ only if the exponent n in W ∝ δⁿ is below this value (W is the
 # loading work). A larger n means that W is nearly zero, because the bodies attract each other.
@@ -77,8 +79,8 @@ class StoredRoughness:
     """Properties of the roughness of a stored contact.
 
     `patches` holds the number of contact patches at each of the indentations `depths` (m). `lay` is
-    the anisotropy of the slopes: 0 if they are equal in all directions, 1 if all of them are along
-    one axis.
+    the anisotropy of the slopes: 0 if the slopes are equal in all directions, 1 if all slopes are
+    along one axis.
     """
 
     depths: Array
@@ -93,8 +95,9 @@ class StoredForce:
     `deepest` is the largest indentation (m) with a stored force, and `highest` the impact velocity
     (m/s) that reaches it. The function `loading` maps indentation (m) to force (N). The function
     `separation` maps the maximum indentation (m) to the indentation at separation (m).
-    `unloading_from` contains increasing depths (m). For each of them, `unloading` contains one
-    curve: increasing indentations (m) and the forces (N). `roughness` is None for smooth bodies.
+    `unloading_from` contains the depths (m, increasing) from which unloading is stored. For each of
+    them, `unloading` contains one curve: increasing indentations (m) and the forces (N).
+    `roughness` is None for smooth bodies.
     """
 
     pair: Pair
@@ -338,8 +341,9 @@ def _loading(depth: Array, force: Array, work: Array) -> Force:
             return math.exp(value) / x * its_slope
 
         return pushing
-    # Adhesion: up to the first stored depth, the force is assumed to be linear in δ. The force at
-    # δ = 0 is chosen such that the work up to the first depth equals the stored work.
+    # W is not a power of δ, usually because of adhesion. Up to the first stored depth, the force is
+    # assumed to be linear in δ. The force at δ = 0 is chosen such that the work up to the first
+    # depth equals the stored work.
     jump_in = 2 * work[0] / depth[0] - force[0]
     curve = _hermite(np.append(0.0, depth), np.append(0.0, work), np.append(jump_in, force))
     return lambda x: curve(max(x, 0.0))[1]

@@ -15,7 +15,7 @@ Content = dict[str, Any]
 
 
 def content_of(text: str) -> Content:
-    """Parse the case file `text`; make every body a table, and `roughness` a list of tables.
+    """Parse the case file `text`. Every body becomes a table, and `roughness` a list of tables.
 
     Raises `CaseError` if `text` is not TOML, or contains a value that JSON cannot represent.
     """
@@ -54,7 +54,10 @@ def text_of(content: Content) -> str:
 
 
 def problems_in(text: str, folder: Path) -> dict[str, str]:
-    """Check the case file `text`, whose scans must be in `folder`; return error messages by key."""
+    """Check the case file `text`; return an error message for each key at fault.
+
+    The scans that the case names must be in `folder`.
+    """
     try:
         content = parse_toml(text)
     except CaseError as error:

@@ -1,6 +1,6 @@
 """The curve that the page redraws while a slider moves.
 
-It is computed on the first surface of the case only, and without the total error.
+If the case has several surfaces, only the first is used. The total error is not computed.
 """
 
 from __future__ import annotations
@@ -70,10 +70,10 @@ class LiveCurves:
             yield curve.maps.line(min(max(depth, 0), len(curve.maps) - 1))
 
     def beside(self, tab: str, shown: str, check: Callable[[], None]) -> Iterator[str]:
-        """Yield the curve of the smooth bodies, then the surface, for the last case of `tab`.
+        """For the last case of `tab`, yield the curve of the smooth bodies, and then the surface.
 
-        The surface is left out if the hash of its heights is `shown`, because the page already
-        shows this surface.
+        The surface is left out if the page already shows it. `shown` is the hash of the heights of
+        the surface that the page shows.
         """
         curve = self._curves.get(tab)
         if curve is not None:

@@ -51,7 +51,7 @@ def _finite(value: Any) -> Any:
 
 
 def live_dataset(case: Case, contact: Contact, rows: Sequence[Mapping[str, float]]) -> xr.Dataset:
-    """Make a dataset of `rows` that suffices for the figures of COR and of force."""
+    """Make a dataset of `rows`, with everything that the figures of COR and of force need."""
     derived = {f"derived_{k}": str(v) for k, v in derived_quantities(case, contact).items()}
     return xr.Dataset(curve_variables(rows), attrs={"title": case.title, **derived})
 
@@ -122,7 +122,7 @@ class ContactMaps:
         return len(self._maps)
 
     def line(self, number: int) -> str:
-        """Return the maps at one depth as a line of JSON; the axes are the same at all depths."""
+        """Return the maps at one depth as a line of JSON. The axes span the maps of all depths."""
         indentation, pressed, yielded = self._maps[number]
         largest = [np.nanmax(each.values, initial=0.0) for each in (pressed, yielded)]
         content: dict[str, Any] = {

@@ -27,9 +27,9 @@ class Field:
 
     `unit` is the SI unit of the quantity. If `low` and `high` are given, they are the ends of a
     slider, in this unit. If `when` is given, the field is shown only while the key `when[0]` has
-    one of the values `when[1:]`. In `when`, "" stands for a missing key. When the field appears for
-    the first time, a missing key is set to `initial`. A field with `more` is placed in the section
-    "More" of its group. This section is open if one of its fields has a value.
+    one of the values `when[1:]`; the value "" stands for a missing key. If the case lacks `key`
+    when the field first appears, `key` is set to `initial`. If `more` is true, the field is placed
+    in the section "More" of its group. This section is open if one of its fields has a value.
     """
 
     key: str

@@ -27,7 +27,8 @@ _LOST = as_json(
     }
 )
 _CLOSED = as_json({"error": "the program has ended; start restitution app again", "lost": True})
-# If a process is ended to stop one request, this line makes `ask` repeat the other requests.
+# A process that does not stop a request is ended. Its other requests then get this line as their
+# answer, and `ask` repeats them.
 _AGAIN = "again"
 _Lines = asyncio.Queue[str | None]
 
@@ -73,7 +74,7 @@ class _Running:
         self._connection, theirs = context.Pipe()
         self.process = context.Process(target=serve, args=(theirs, scans, room), daemon=True)
         self.process.start()
-        theirs.close()  # otherwise this side would not notice that the process has ended
+        theirs.close()  # otherwise `_receive` would not notice that the process has ended
         self.waiting: dict[int, _Lines] = {}
         self._last_words = ""  # line that waiting requests get if the process is ended on purpose
         self._watching: set[asyncio.Task[None]] = set()

@@ -1,9 +1,9 @@
 """The server of the page: it sends static files, and answers requests that only this page can make.
 
-These requests are POST requests with the token, which is part of the address of the page. An Origin
-header, if there is one, must name this page. The Host header must name this machine. Otherwise a
-web site could let its own domain name refer to this machine (DNS rebinding), and the pages of this
-site could reach the server.
+These requests are POST requests with a token. The token is part of the address of the page. An
+Origin header, if there is one, must name this page. The Host header must name this machine. The
+rule for Host prevents DNS rebinding: a web site lets its own domain name refer to this machine, so
+that its pages reach the server.
 """
 
 from __future__ import annotations
@@ -59,8 +59,8 @@ Handler = Callable[[Request], Awaitable[Response]]
 class Server:
     """Receives the requests of the page and passes each of them to a worker process.
 
-    Live curves, complete runs and finer runs do not delay each other, because each of the three has
-    its own process.
+    Live curves, complete runs and runs on finer grids each have their own process, so they do not
+    delay each other.
     """
 
     def __init__(self, session: Session) -> None:

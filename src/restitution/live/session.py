@@ -23,7 +23,7 @@ class Session:
     """
 
     def __init__(self, content: Content, folder: Path | None = None) -> None:
-        """Make the folders, and link the scans of `content` into `scans`.
+        """Make the folders, and link the scans of `content` into the folder `scans`.
 
         The paths of these scans are relative to `folder`.
         """
@@ -63,7 +63,7 @@ def first_content(case: Path | None) -> Content:
 
 
 def _bring_scans(content: Content, folder: Path, scans: Path) -> None:
-    """Link the scans of `content` into `scans`, and replace their paths in `content` by names."""
+    """Link the scans of `content` into `scans`; replace their paths in `content` by file names."""
     for table in scans_of(content):
         path = folder / table["file"]
         source = path.resolve()

@@ -24,7 +24,7 @@ CASE_FILE = "case.toml"
 
 
 def case_file(text: str, scans: Path, out: Path) -> Path:
-    """Write the case file into `out`; if it names scans, write a zip archive that includes them."""
+    """Write the case file into `out`. If it names scans, write a zip archive that includes them."""
     names = [table["file"] for table in scans_of(content_of(text))]
     if not names:
         (out / CASE_FILE).write_text(text, encoding="utf-8")

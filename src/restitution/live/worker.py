@@ -2,7 +2,8 @@
 
 A request is a `Request`; an answer is a series of lines of JSON, then None. A new request replaces
 an older one of the same kind from the same browser tab. If the older request is already being
-computed, it stops at its next depth. A new request for a curve stops any request of its tab.
+computed, it stops at its next depth. A request of any kind that is being computed also stops if its
+tab requests a new curve.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ REPLACED = as_json({"replaced": True})
 
 @dataclass(frozen=True)
 class Request:
-    """A request of one browser tab. `kind` names the method of `Worker` that gets `values`."""
+    """A request of one browser tab. The method `kind` of `Worker` answers it, using `values`."""
 
     number: int
     tab: str
@@ -64,7 +65,7 @@ class Inbox:
             self._changed.wait_for(lambda: self._waiting)
             key = next(iter(self._waiting))
             self._now = self._waiting.pop(key)
-            self._given_up.clear()  # all earlier requests are answered
+            self._given_up.clear()  # numbers of earlier requests, which are all answered
             return self._now
 
     def check(self) -> None:
@@ -77,7 +78,7 @@ class Inbox:
                 raise NotWanted
 
     def _listen(self) -> None:
-        """Receive requests, and the numbers of requests to give up, until the parent has ended."""
+        """Receive requests, and numbers of unwanted requests, until the parent process ends."""
         while True:
             try:
                 message = self._connection.recv()
@@ -154,7 +155,7 @@ class Worker:
         yield as_json({"file": str(file.relative_to(self._room))})
 
     def read(self, tab: str, file: str) -> Iterator[str]:
-        """Read a scan; yield its nodes and spacing, or `needs_size` if it has no edge lengths."""
+        """Read a scan; yield its nodes and spacing, or `needs_size` if the file states no size."""
         from restitution.surfaces import read_surface
         from restitution.surfaces.refused import RefusedSurfaceError
 

@@ -1,1 +1,1 @@
-"""Mixtures: laws of all pairs of particles of several materials and sizes, from few runs."""
+"""Mixtures of several materials and sizes: compute the laws of all pairs from few runs."""

@@ -1,10 +1,10 @@
-"""Pairs of particles from two components of a mixture, and the case for a reduced radius.
+"""Families: all pairs of particles from two components of a mixture.
 
 Smooth spheres without adhesion obey a scaling law. With lengths in units of the reduced radius R*,
 the contact depends only on W/R*³, where W is the loading work. The masses and the two radii have no
 other influence. Roughness and adhesion have lengths that do not scale with R*. Therefore, COR of
-all pairs of two components is one function of W/R*³ and R*, and these pairs are called a family.
-With the reduced mass m* and the impact velocity V, W/R*³ is ½ κ V² with κ = m*/R*³.
+all pairs of a family is one function of W/R*³ and R*. With the reduced mass m* and the impact
+velocity V, W/R*³ is ½ κ V² with κ = m*/R*³. `Family.case` writes the case file for one value of R*.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from restitution.errors import CaseError, RestitutionError
 from restitution.laws.law import Particle
 from restitution.mixtures.mixture_file import Component, Mixture
 
-_WIDTH = 2.8  # ratio of the grid width to the largest possible radius of the deepest contact
+_WIDTH = 2.8  # grid width divided by the upper estimate of the contact radius (`_half_width`)
 _PEAKS = 4.0  # height of the highest peaks, in units of the rms height
 _NODES = 256  # smallest number of nodes along the edge of the grid
 _MOST_NODES = 1024  # largest number of nodes along the edge of the grid
@@ -63,7 +63,7 @@ class Family:
 
     @cached_property
     def meetings(self) -> tuple[Meeting, ...]:
-        """All pairs of particle sizes of the two components, each pair once."""
+        """All pairs of a particle of `first` and a particle of `second`, each pair once."""
         ours, theirs = _particles(self.first), _particles(self.second)
         if self.second is self.first:
             return tuple(
@@ -84,16 +84,16 @@ class Family:
         return tuple(found)
 
     def case(self, radius: float) -> str:
-        """Write the text of the case for the reduced `radius` (m).
+        """Write the text of the case for the reduced `radius` R* (m).
 
-        W is the loading work. The velocities of the case cover the range of W/R*³ of all pairs that
-        share this curve.
+        The velocities of the case cover the range of W/R*³ of every pair of the family. W is the
+        loading work.
         """
         return tomli_w.dumps(self._content(radius, self._grid))
 
     @cached_property
     def _grid(self) -> dict[str, Any]:
-        """Make the table `[grid]`. All reduced radii have the same grid and the same surface."""
+        """Make the table `[grid]`. It is the same for all reduced radii, and so is the surface."""
         if self.mixture.grid is not None:
             return {"refine": "auto", **self.mixture.grid}
         probe = {"nodes": 64, "spacing": "1 um"}
@@ -136,9 +136,8 @@ class Family:
     def _velocities(self, radius: float) -> list[float]:
         """Velocities (m/s) of the case for the reduced `radius` (m).
 
-        The velocities of the mixture are included. Lower and higher velocities are added if they
-        are needed to cover the range of W/R*³ of all pairs of the family, where W is the loading
-        work.
+        The velocities of the mixture are included. Lower and higher velocities are added where the
+        range of W/R*³ of another pair of the family needs them. W is the loading work.
         """
         asked = self.mixture.velocities
         own = _particle(self.first, radius if self.second.wall else 2 * radius)
@@ -164,7 +163,7 @@ def families(mixture: Mixture) -> list[Family]:
 
 
 def _steps(start: float, end: float, step: float) -> list[float]:
-    """Velocities from `start` (excluded) to `end`, with successive ratios of about `step`.
+    """Velocities from `start` (excluded) to `end`, each about `step` times the previous one.
 
     The result is empty if `start` and `end` are equal.
     """
@@ -176,9 +175,9 @@ def _steps(start: float, end: float, step: float) -> list[float]:
 
 
 def _another(table: dict[str, Any], others: list[dict[str, Any]]) -> dict[str, Any]:
-    """Return a roughness table for the second body: `table`, changed to an independent surface.
+    """Copy a roughness `table` and change it to an independent surface for the second body.
 
-    The seed, or the place on the scan, differs from those in `others`. With the same seed, two
+    The new seed (or place on the scan) differs from those in `others`. With the same seed, two
     surfaces would have the same phases, and their waves would add up.
     """
     random = table.get("kind") != "measured" or table.get("extend") == "twin"

@@ -1,9 +1,10 @@
 """Compute all laws of a mixture from as few runs as the error of interpolation allows.
 
-All pairs of two components (materials or walls) are a family. Each family is first computed at its
-smallest, a middle and its largest reduced radius. If the interpolation error of a pair exceeds its
-limit, another radius is computed, in the middle between the neighbouring computed radii. This step
-is repeated until no error exceeds its limit.
+All pairs of particles from two components (materials or walls) are a family. For each family, laws
+are first computed at the smallest, a middle and the largest reduced radius R*. The laws at other R*
+are interpolated. If the interpolation error of a pair exceeds its limit, the law at one more R* is
+computed, about in the middle between two computed R*. This is repeated until no error exceeds its
+limit.
 """
 
 from __future__ import annotations
@@ -30,7 +31,10 @@ Progress = Callable[[Tally], None]
 
 @dataclass(frozen=True)
 class PairLaw:
-    """The law of one pair of particles, and the error of COR by interpolation (0 if `computed`)."""
+    """The law of one pair of particles, and whether it was `computed` or interpolated.
+
+    `interpolation_error` is the error of COR due to interpolation, and is 0 for a computed law.
+    """
 
     law: Law
     computed: bool
@@ -71,7 +75,7 @@ def _run_all(
     workers: Workers,
     progress: Progress,
 ) -> None:
-    """Set the cases of the study in `out` to `cases`, and run the cases not stored yet."""
+    """Make `cases` the cases of the study in `out`, and run those that have no results yet."""
     swept = {name: [case.values[name] for case in cases] for name in cases[0].values}
     out.study = replace(out.study, swept=swept, cases=cases)
     run_study(out.study, folder, out, workers, progress)
@@ -86,7 +90,7 @@ def _run_all(
 def _computed(
     family: Family, cases: Mapping[tuple[str, float], SweptCase], out: StudyFolder
 ) -> Computed:
-    """Read the laws of `family` at the reduced radii (m) that have been computed so far."""
+    """Read the laws of `family` that have been computed so far, in order of reduced radius."""
     radii = sorted(radius for name, radius in cases if name == family.name)
     folders = [out.folder_of(cases[family.name, radius]) for radius in radii]
     return Computed(family, tuple(map(bare_law, folders)))
@@ -99,10 +103,10 @@ def _first_radii(family: Family) -> list[float]:
 
 
 def _more_radii(computed: Computed) -> Iterator[float]:
-    """Yield the reduced radii (m) to compute next.
+    """Yield the reduced radii (m) at which laws are computed next.
 
-    One radius is chosen between two neighbouring computed radii if the interpolation error of a
-    pair between them is too large.
+    A pair whose reduced radius lies between two computed radii can have too large an interpolation
+    error. One radius between these two is then chosen.
     """
     family = computed.family
     poor = {meeting.radius for meeting in family.meetings if not computed.is_good(meeting)}

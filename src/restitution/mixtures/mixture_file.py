@@ -110,7 +110,7 @@ class Mixture:
     """A checked mixture file.
 
     `grid` is the table as written in the file. `interfaces` maps the names of two components to the
-    table `[interface]` of their pairs. The empty key maps to the table for all other pairs.
+    table `[interface]` of their pairs. The key `frozenset()` stands for all other pairs.
     """
 
     title: str

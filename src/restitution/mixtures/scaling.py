@@ -1,10 +1,12 @@
-"""Laws of all pairs of a family, from the laws at a few reduced radii R*.
+"""Interpolate the laws of all pairs of a family between laws at a few reduced radii R*.
 
-At equal W/R*³, where W is the loading work, the ratio of unloading work to W is interpolated in
-ln R* by a monotone cubic. `RatioCurve` estimates the error at each velocity from the leave-one-out
-residuals of the two neighbouring radii. Such a residual can be zero by chance. Therefore, the error
-at a velocity is the largest of the estimates at this velocity and at the two neighbouring
-velocities.
+A family contains all pairs of particles from two components of a mixture. W is the loading work.
+Unloading work divided by W is interpolated at equal W/R*³, by a monotone cubic in ln R*.
+
+`RatioCurve` estimates the error from leave-one-out residuals. Such a residual is the error at a
+computed R* if this R* is left out of the interpolation. It can be zero by chance. Therefore, the
+error at a velocity is the largest of three estimates: at this velocity, at the next lower and at
+the next higher velocity.
 """
 
 from __future__ import annotations
@@ -23,15 +25,15 @@ from restitution.mixtures.family import Family, Meeting
 
 Array = NDArray[np.float64]
 
-# An interpolation error of COR above the limit given for the mixture is accepted if it is at most
-# _SHARE times the error of the computed laws and at most _MOST.
+# An interpolation error of COR is accepted up to the limit given for the mixture. A larger error is
+# accepted, too, if it exceeds neither _MOST nor _SHARE times the error of the computed laws.
 _SHARE, _MOST = 0.25, 0.05
 _SAME = 1e-9  # largest relative difference of radii that count as equal
 
 
 @dataclass(frozen=True)
 class Computed:
-    """The laws of a family that were computed, at the reduced radii `radii` (m, increasing)."""
+    """The computed laws of a family (all pairs of two components), by increasing reduced radius."""
 
     family: Family
     laws: tuple[Law, ...]
@@ -46,7 +48,7 @@ class Computed:
         return bool((np.abs(self.radii / radius - 1) < _SAME).any())
 
     def is_good(self, meeting: Meeting) -> bool:
-        """Whether the law of the pair is accurate enough without computing another radius.
+        """Whether the law of the pair is accurate enough without a law at another reduced radius.
 
         At every velocity, the error of COR due to interpolation in R* must not exceed the larger of
         two limits. One is the `interpolation_error` given for the mixture. The other is a quarter
@@ -108,7 +110,7 @@ class Computed:
         )
 
     def _curves(self, meeting: Meeting) -> list[RatioCurve]:
-        """Make a curve of the ratio of unloading to loading work against R*, for each velocity."""
+        """For each velocity, make the curve of unloading work over loading work against R*."""
         ratios = (
             np.array([law.curve().at(_of(law, V, meeting)) for law in self.laws], dtype=float)
             for V in self.family.mixture.velocities
@@ -124,9 +126,9 @@ class Computed:
         used = [k for k, share in enumerate(shares) if share > _SAME]
 
         def mean(name: str, power: int) -> float:
-            """Interpolate the field `name` between the laws at the two neighbouring radii.
+            """Interpolate the field `name` between the laws at the next lower and higher R*.
 
-            The field is assumed to be proportional to R*^power.
+            The interpolated quantity is the field divided by R*^power.
             """
             R = meeting.radius
             return R**power * sum(
@@ -151,10 +153,10 @@ class Computed:
 
 
 def _of(law: Law, V: float, meeting: Meeting) -> float:
-    """Velocity (m/s) at which `law` has the same W/R*³ as the pair `meeting` at V (m/s).
+    """Velocity (m/s) at which `law` has the W/R*³ that the pair `meeting` has at `V` (m/s).
 
-    W is the loading work. If the velocity is outside the range of `law` by at most 1e-3 (relative),
-    the nearest velocity of this range is returned.
+    W is the loading work, and R* the reduced radius. If the velocity is outside the range of `law`
+    by at most 1e-3 (relative), the nearest velocity of this range is returned.
     """
     velocity = V * math.sqrt(meeting.kappa / (law.mass / law.radius**3))
     near = law.lowest * (1 - 1e-3) <= velocity <= law.highest * (1 + 1e-3)
@@ -166,8 +168,9 @@ def _value(curve: RatioCurve, radius: float) -> float:
 
 
 def _error_of(curve: RatioCurve, radius: float, near: list[RatioCurve]) -> float:
-    """The interpolation error of COR at `radius` (m).
+    """The interpolation error of COR at the reduced `radius` (m), at one velocity.
 
+    `curve` is the ratio of unloading to loading work against reduced radius at this velocity.
     `near` contains `curve` and the curves at the next lower and higher velocity.
     """
     ratio = _value(curve, radius)
@@ -179,8 +182,8 @@ def _error_of(curve: RatioCurve, radius: float, near: list[RatioCurve]) -> float
 def _column_at(law: Law, name: str, velocity: float) -> float:
     """Interpolate the field `name` of the points of `law` at `velocity` (m/s).
 
-    Between two points, the field is a power of the velocity. If any value of the field is not
-    positive, the field is linear in the logarithm of the velocity instead.
+    Between two points, the logarithm of the field is linear in the logarithm of the velocity. If
+    any value is not positive, the field itself is linear in the logarithm of the velocity.
     """
     L, values = np.log(law.column("velocity")), law.column(name)
     if (values <= 0).any():

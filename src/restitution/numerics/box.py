@@ -22,7 +22,7 @@ def shape_of(box: Box) -> tuple[int, int]:
 def bounding_box(mask: NDArray[np.bool_], within: Box | None = None) -> Box | None:
     """Return the smallest box that contains every true node of `mask`; None if no node is true.
 
-    `within` is the box of the grid on which `mask` is given, by default the whole grid.
+    `mask` covers the box `within` of the grid; by default, it covers the whole grid.
     """
     rows = np.flatnonzero(mask.any(axis=1))
     if rows.size == 0:
@@ -54,9 +54,9 @@ def union(first: Box | None, second: Box | None) -> Box | None:
 
 
 def reframe(values: NDArray[Scalar], box: Box, wanted: Box) -> NDArray[Scalar]:
-    """Return `values`, given on `box`, as an array on the box `wanted`, with zeros outside `box`.
+    """Convert `values`, an array on `box`, to an array on the box `wanted`.
 
-    If the boxes are equal, the result is `values` itself.
+    Nodes outside `box` get the value zero. If the boxes are equal, the result is `values` itself.
     """
     if box == wanted:
         return values

@@ -85,7 +85,7 @@ def _sides(edges: tuple[float, float]) -> str:
 
 
 def _both(name: str, value: Any, wanted: str) -> tuple[Any, Any]:
-    """Return the two values of `value` along x and y, or `value` twice if it is one number.
+    """Return one value for x and one for y: the two items of `value`, or one number twice.
 
     Any other `value` raises `CaseError`; the message states the expected input, `wanted`.
     """

@@ -1,8 +1,8 @@
-"""Selection of compiled kernels or NumPy expressions, and of the instruction set of the kernels.
+"""The choice between compiled kernels and NumPy expressions, and of the kernels' instruction set.
 
 Each time-critical operation is written twice: as a NumPy expression of whole arrays, which works on
-any device, and as a C++ loop that computes the same result in one pass over memory. Tests compare
-the results of the two versions.
+any device, and as a C++ loop (a compiled kernel) that computes the same result in one pass over
+memory. Tests compare the results of the two versions.
 
 The loops form the module `restitution.numerics.loops`. If this module was not compiled or cannot be
 loaded, the NumPy expressions are used. The expressions are several times slower than the loops.
@@ -64,7 +64,7 @@ instruction_set: str = INSTRUCTION_SETS[loops.instruction_set] if loops else "no
 
 
 def missing() -> str | None:
-    """Return None, or a message with reason and remedy if no compiled kernels are used."""
+    """Return None if compiled kernels are used, else a message with the reason and a remedy."""
     if loops is not None:
         return None
     return f"NumPy replaces the compiled kernels and takes 3 to 6 times as long: {_reason}"

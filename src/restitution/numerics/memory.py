@@ -8,17 +8,17 @@ from pathlib import Path
 
 from restitution.errors import CaseError
 
-# Size of a memory page (bytes). Control groups of version 1 report "no limit" as 2**63 − 1 rounded
-# down to whole pages.
+# Size of a memory page (bytes). If there is no limit, control groups of version 1 report
+# 2**63 − 1, rounded down to whole pages.
 _PAGE = 2**12
 _GROUPS = Path("/sys/fs/cgroup")
 
 
 def available() -> float:
-    """Memory limit of this process (bytes); infinite if the system does not report any limit.
+    """Most memory that this process can use (bytes); infinite if the system reports no limit.
 
-    The limit is the smallest of three values: the memory of the machine, the limit of the control
-    groups and the limit of the address space.
+    It is the smallest of three limits: the memory of the machine, the limit of the control groups
+    and the limit of the address space.
     """
     return min(_of_machine(), _of_control_groups(), _of_address_space())
 
@@ -52,15 +52,18 @@ def _of_control_groups(groups: str = "/proc/self/cgroup") -> float:
     except OSError:
         return least
     for line in lines:
+        # Lines for control groups of version 2 have an empty second field. Lines for version 1 have
+        # a list of controllers in this field.
         match line.split(":", 2):
-            case [_, "", path]:  # control groups of version 2
+            case [_, "", path]:
                 root, file = _GROUPS, "memory.max"
-            case [_, controllers, path] if "memory" in controllers.split(","):  # version 1
+            case [_, controllers, path] if "memory" in controllers.split(","):
                 root, file = _GROUPS / "memory", "memory.limit_in_bytes"
             case _:
                 continue
         group = root / path.lstrip("/")
-        # In a container, `path` may belong to the host and not exist here, but `root` exists.
+        # In a container, `path` can be a path on the host. Then `group` does not exist here, and
+        # the limit is read from a parent folder, at the latest from `root`.
         folders = [each for each in (group, *group.parents) if each.is_relative_to(root)]
         least = min(least, *(_limit(each / file) for each in folders))
     return least

@@ -8,7 +8,7 @@ is K⁻¹ + diag(φ″).
 
 Each step of Newton's method is solved by conjugate gradients that stop at the boundary of a trust
 region or at negative curvature (Steihaug 1983, SIAM J. Numer. Anal. 20, 626–637). K is the
-preconditioner, so each direction is K times a sum of residuals. This sum is stored, because it is
+preconditioner, so each direction is K s, where s is a sum of residuals. This s is stored: it is
 the product of K⁻¹ and the direction. So an iteration takes only one product with K. Apart from
 rounding errors, the energy falls in every accepted step. So the method descends from its start to
 a neighbouring minimum.
@@ -34,13 +34,14 @@ NodePotential = Callable[[Array], tuple[Array, Array, Array]]
 
 MOST_STEPS = 300  # Newton steps after which the solve counts as not converged
 _MOST_ITERATIONS = 500  # limit on the conjugate-gradient iterations of one Newton step
-_FORCING = 0.1  # largest residual of the linear system of a step, relative to the gradient
+_FORCING = 0.1  # largest relative residual of the linear system of a Newton step
 
-# Limits of the ratio of the actual to the predicted decrease of the energy. A step is accepted
-# above _TAKEN. The trust region shrinks below _POOR and may grow above _GOOD.
+# Let q be the actual decrease of the energy in a step, divided by the predicted decrease. The step
+# is accepted if q > _TAKEN. The trust region shrinks if q < _POOR. It grows if q > _GOOD and the
+# step ended at the edge of the region.
 _TAKEN, _POOR, _GOOD = 0.05, 0.25, 0.75
-# If the predicted decrease is below this fraction of the energy, rounding errors may hide it, and
-# the step is accepted without a test.
+# If the predicted decrease is below this fraction of the energy, rounding errors can be larger than
+# the decrease. The step is then accepted without a test.
 _ROUNDING = 1e-13
 
 
@@ -48,8 +49,8 @@ _ROUNDING = 1e-13
 class LocalMinimum:
     """Final point of `minimise_locally`: u and p = K⁻¹u.
 
-    `residual` is the largest |r|/(|φ″| + 1/K₀₀), in the units of u, where r is the gradient, φ″ the
-    second derivative of the potential of a node and K₀₀ the diagonal of K. `steps` counts Newton
+    `residual` is the largest |r|/(|φ″| + 1/K₀₀), in the units of u. Here r is the gradient, φ″ the
+    second derivative of the potential of a node, and K₀₀ the diagonal of K. `steps` counts Newton
     steps. `negative_curvature` is True if the method met a direction of negative curvature.
     """
 
@@ -75,7 +76,8 @@ def minimise_locally(
     """Descend from (p, u) to a local minimum of ½ uᵀK⁻¹u + Σ φ(u), where `potential` returns φ.
 
     `p` and `u` = K p are the start and are not changed. `length` is the change of u over which φ″
-    changes noticeably. It limits a step along negative curvature until a trust region is known.
+    changes noticeably. As long as there is no trust region, it limits steps along a direction of
+    negative curvature.
     `tolerance` limits `LocalMinimum.residual`. `zero_mean` states that K maps constant arrays to
     zero and is positive definite for arrays of mean zero. If the method does not converge,
     `converged` of the result is False; no exception is raised.
@@ -129,8 +131,9 @@ def _newton_step(
     Returns x, K⁻¹x, whether a limit truncated the step, and whether the step met a direction of
     negative curvature. The step x is a change of the unknowns u. `limits` are two numbers. The
     first is the radius of the trust region in the norm (xᵀK⁻¹x)^½; it is infinite if there is no
-    trust region yet. In this case, a direction of negative curvature ends the step. The second
-    number is the largest magnitude of the change of u along this direction.
+    trust region yet. A direction of negative curvature takes the step to the edge of the trust
+    region and ends it. If there is no trust region, the second number limits the change of u along
+    this direction.
     """
     radius, length = limits
     x, Sx, Hd, scaled = (np.zeros_like(r) for _ in range(4))
@@ -161,7 +164,7 @@ def _newton_step(
         x += np.multiply(d, a, out=scaled)
         Sx += np.multiply(Sd, a, out=scaled)
         rest -= np.multiply(Hd, a, out=scaled)
-        if zero_mean:  # the mean has no effect but would increase errors in single precision
+        if zero_mean:  # K ignores the mean, which would only increase rounding errors
             rest -= rest.mean()
         K.single_precision(rest, out=z)
         before, rz = rz, _dot(rest, z)

@@ -1,4 +1,4 @@
-"""The table at the end of a page that lists the methods of the computation with their sources."""
+"""The last table of a page: the methods of the computation, with their sources."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The part of a page about the oblique impacts of a run."""
+"""The oblique impacts of a run, as one part of its page."""
 
 from __future__ import annotations
 

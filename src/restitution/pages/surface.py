@@ -28,7 +28,7 @@ from restitution.surfaces.texture import autocorrelation, height_density, materi
 _LAY = 0.5  # texture aspect ratio below which a surface has a lay
 
 # For each parameter: name, clause of ISO 25178-2:2012, unit in the table, factor from SI to this
-# unit, and the key of the requested value in the provenance of the surface.
+# unit, and the key under which the provenance of the surface holds the requested value.
 _PARAMETERS: dict[str, tuple[str, str, str, float, str]] = {
     "Sq_m": ("root mean square height Sq", "4.1.1", "nm", 1e9, "rms_m"),
     "Ssk": ("skewness Ssk", "4.1.2", "", 1, "skewness"),

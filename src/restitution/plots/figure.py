@@ -26,7 +26,7 @@ DASH_DOTTED: Dash = (6, 2, 1, 2)
 # Colours of Okabe and Ito (2008) without yellow and black. Colour-blind readers can distinguish
 # them, on light and on dark backgrounds.
 PALETTE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
-# Symbols distinguish series that share a colour, and all series in print without colours.
+# Symbols distinguish series that share a colour. In print without colours, they distinguish all.
 SYMBOLS: tuple[Symbol, ...] = ("circle", "square", "diamond", "triangle-up", "triangle-down")
 BLUE, ORANGE = PALETTE[:2]
 GREY = "#7d858e"  # colour of reference curves, legible on light and dark pages
@@ -74,7 +74,8 @@ class Points:
     """Markers at `x` and `y` with error bars; if `joined`, a line connects the markers.
 
     `error` has shape (n,) for symmetric bars, or (2, n) for the lengths below and above. Markers
-    are open where `open` is true; `open_label` and `error_label` are entries of the legend.
+    are open where `open` is true. In the legend, `open_label` stands beside an open marker, and
+    `error_label` beside an error bar.
     """
 
     x: Array

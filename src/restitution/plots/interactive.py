@@ -59,7 +59,7 @@ def shown_step(panel: Map) -> int:
 
 
 def _chart_axes(chart: Chart) -> dict[str, Any]:
-    """Make the axes of a chart; an axis on the right gets a wider margin."""
+    """Make the axes of a chart. If it has an axis on the right, make the right margin wider."""
     axes = {"xaxis": _axis(chart.x), "yaxis": _axis(chart.y)}
     if chart.right is None:
         return axes
@@ -74,7 +74,7 @@ def _chart_axes(chart: Chart) -> dict[str, Any]:
 
 
 def _all_traces(chart: Chart) -> list[dict[str, Any]]:
-    """Make the traces of all series, from bottom to top; each label has one legend entry."""
+    """Make the traces of all series, from bottom to top. The legend shows each label once."""
     ranks = {label: rank for rank, label in enumerate(legend_entries(chart), 1)}
     seen: set[str] = set()
     found = []
@@ -90,7 +90,7 @@ def _all_traces(chart: Chart) -> list[dict[str, Any]]:
 
 
 def _traces(each: Band | Line | Points, chart: Chart) -> list[dict[str, Any]]:
-    """Make the traces of one series; the key `entry` of a trace is its legend text."""
+    """Make the traces of one series. The key `entry` of a trace holds its legend text."""
     if isinstance(each, Band):
         edge = {"x": each.x, "mode": "lines", "line": {"width": 0}, "hoverinfo": "skip"}
         return [

@@ -36,9 +36,9 @@ def has_oblique(results: xr.Dataset) -> bool:
 def oblique_figure(results: xr.Dataset) -> Figure:
     """Plot tangential restitution, rebound and spin of the first body against the angle of impact.
 
-    The dotted line marks the angle from which the whole contact slides (full slip). The dashed line
-    is the closed form of the tangential restitution in full slip. Both lines are drawn for the
-    largest impact velocity, and only if no body spins before the impact.
+    The dotted line marks the smallest angle of impact at which the whole contact slides (full
+    slip). The dashed line is the closed form of the tangential restitution in full slip. Both lines
+    are drawn for the largest impact velocity, and only if no body spins before the impact.
     """
     degrees = np.degrees(results["oblique_angle"].values)
     axis = Axis("angle of impact", "°", low=0.0, high=min(90.0, 1.05 * degrees.max() + 1))
@@ -82,9 +82,9 @@ def _points(results: xr.Dataset, variable: str, scale: float) -> Iterator[Points
 def _full_slip(results: xr.Dataset) -> list[Series]:
     """Mark the angle of full slip; beyond it, draw the closed form of tangential restitution.
 
-    The angle of full slip is the angle of impact from which the whole contact slides. The list is
-    empty without friction or without results. It is also empty if a body spins before the impact,
-    because the closed form does not include this spin.
+    The angle of full slip is the smallest angle of impact at which the whole contact slides. The
+    list is empty without friction or without results. It is also empty if a body spins before the
+    impact, because the closed form does not include this spin.
     """
     if results["oblique_first_spin_before"].any() or results["oblique_second_spin_before"].any():
         return []

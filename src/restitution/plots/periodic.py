@@ -22,7 +22,7 @@ def periodic_figures(results: xr.Dataset) -> Iterator[tuple[str, Figure]]:
 def area_against_pressure(results: xr.Dataset) -> Figure:
     """Plot relative contact area and mean gap against nominal pressure.
 
-    A dashed line shows Persson's contact area of an elastic contact, for comparison.
+    For comparison, a dashed line shows the contact area from Persson's theory of elastic contact.
     """
     title = results.attrs.get("title", "")
     # Leave out negative nominal pressures (due to attraction), because the axis is logarithmic.

@@ -41,7 +41,7 @@ UNRESOLVED = f"open: not resolved (patches of under {NODES_PER_PATCH} nodes)"
 
 _MARGIN = 1.2  # factor by which a logarithmic axis extends beyond the first and the last point
 _RIM = 4  # number of nodes between the contact and each edge of its map
-_UNIFORM = 0.01  # largest relative difference of pressures that count as equal
+_UNIFORM = 0.01  # pressures with a smaller relative difference count as equal
 
 # If a contact yields, and at least this fraction of its area is at the largest pressure, the
 # pressure map is left out.

@@ -42,8 +42,8 @@ _CHART, _MAP, _SECOND = (6.4, 4.0), (5.6, 4.6), 4.6
 _ROW, _SIDE = 0.2, 2.4
 # Largest number of entries of a legend below the axes; a longer legend is placed at the side.
 _MOST_BELOW = 8
-# Pairs (decades, digits): a logarithmic axis that spans at most this number of decades has labels
-# at these digits times powers of ten.
+# Pairs (decades, digits). If a logarithmic axis spans at most `decades` decades, it has labels at
+# `digits` times powers of ten.
 _DIGITS: tuple[tuple[float, tuple[int, ...]], ...] = ((1.0, (1, 2, 3, 5, 7)), (3.0, (1, 2, 5)))
 _TICKS = 6  # largest number of intervals between the labels of a linear axis
 _LINEAR = 0.5  # a logarithmic axis that spans fewer decades than this has linear ticks

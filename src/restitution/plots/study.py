@@ -15,7 +15,7 @@ MOST_LINES = 60  # largest number of lines in a figure; more cannot be distingui
 
 
 def rows_with(case: StoredCase, abscissa: Abscissa) -> list[dict[str, float]]:
-    """Select the rows of the curve of `case` that have a value of `abscissa`."""
+    """Select the rows of the curve of `case` in which `abscissa` has a value."""
     return [row for row in case.curve.rows if not math.isnan(row[abscissa.column])]
 
 
@@ -26,7 +26,7 @@ def study_figure(cases: Sequence[StoredCase], abscissa: Abscissa) -> Figure:
         rows = rows_with(case, abscissa)
         if not rows:
             continue
-        # The last part of each swept key is enough as a label.
+        # The label shows only the last part of each swept key: "rms" for "roughness.rms".
         label = ", ".join(f"{key.rsplit('.', 1)[-1]} {value}" for key, value in case.swept.items())
         series.append(
             Points(

@@ -75,9 +75,9 @@ def autocorrelation_figure(R: Autocorrelation) -> Figure:
 
 
 def spectrum_figure(spectra: list[DirectedSpectrum]) -> Figure:
-    """Plot power spectral densities.
+    """Plot the power spectral densities `spectra`.
 
-    They are averages over all directions, over directions near x, and over directions near y.
+    Each is an average over all directions, over directions near x, or over directions near y.
     """
     series: list[Line] = []
     largest = 0.0

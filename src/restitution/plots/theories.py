@@ -21,8 +21,8 @@ def theory_figure(
     """Plot COR against velocity: one line for each theory, and the computed points of `law`.
 
     Each of `lines` is a tuple: the name, whether the line is a fit, the velocities (m/s), and COR.
-    Lines without a finite COR are left out. `marks` maps symbols to the velocities (m/s) of first
-    yield and of sticking.
+    Lines without a finite COR are left out. `marks` maps the symbols "V_y" and "V_s" to the
+    velocities (m/s) of first yield and of sticking.
     """
     series: list[Series] = (
         [] if law is None else [computed_points(law, "computed", "computed, not resolved")]

@@ -1,7 +1,7 @@
-"""Claims of the paper on each figure, compared with the results of the bundled studies.
+"""The claims of Ghanbarzadeh et al. (2019) on each figure, compared with the bundled studies.
 
-Each function in `CLAIMS` judges one claim. The function receives the studies by name, compares the
-results of the studies with a threshold for agreement, and returns a `Finding`.
+Each function in `CLAIMS` judges one claim of this paper. It receives the studies by name, compares
+their results with a threshold for agreement, and returns a `Finding`.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ Studies = Mapping[str, xr.Dataset]
 Verdict = Literal["agrees", "agrees in part", "does not agree", "not decided"]
 
 # Values of the two steel spheres of the paper: reduced radius R* (m), contact modulus E* (Pa),
-# yield pressure p_y (Pa) and radius of each sphere (m). In the code, R is the reduced radius. In
-# the claims of the paper, R is understood as the radius of each sphere (RADIUS).
+# yield pressure p_y (Pa) and radius of each sphere (m). The name R stands for the reduced radius
+# here. In the claims of the paper, R is understood as the radius of each sphere (RADIUS).
 R, E_STAR, P_Y, RADIUS = 250e-6, 112e9, 750e6, 500e-6
 SMOOTH = "1 pm"  # rms roughness of cases that represent the smooth sphere
 _VARIABLES = ("indentation", "restitution", "force", "pull_off_force", "resolved")
@@ -37,7 +37,7 @@ class Finding:
     """A claim of the paper and what the computed results say about it.
 
     `found` describes the result in words. `number` is the value that decides whether the results
-    agree with the claim. `resolved` counts the resolved depths.
+    agree with the claim. `resolved` says at how many depths the grid resolves the contact.
     """
 
     figure: str
@@ -262,7 +262,7 @@ def _single_nodes(flags: NDArray[np.bool_]) -> str:
 
 
 def critical_indentation(curve: Curve, smooth: Curve) -> float:
-    """Depth (m) beyond which COR stays within 5 % of the smooth sphere's; NaN if not reached.
+    """Depth (m) beyond which COR differs by at most 5 % from the smooth sphere; NaN if not reached.
 
     The result lies between the last depth at which the difference exceeds 5 % and the next depth.
     Between these depths, the difference is interpolated linearly in the logarithm of depth. If the
@@ -280,7 +280,7 @@ def critical_indentation(curve: Curve, smooth: Curve) -> float:
 
 
 def critical_indentations(study: xr.Dataset) -> dict[str, tuple[float, float]]:
-    """Map the label of each rough case of a study to its Rq/R and critical indentation (m)."""
+    """Return Rq/RADIUS and the critical indentation (m) of each rough case of a study, by label."""
     rough, smooth = rough_and_smooth(study)
     return {
         curve.label: (

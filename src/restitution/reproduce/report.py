@@ -1,4 +1,4 @@
-"""Write the page that compares the figures and claims of the paper with the stored studies."""
+"""Write the page that compares Ghanbarzadeh et al. (2019) with the stored studies."""
 
 from __future__ import annotations
 

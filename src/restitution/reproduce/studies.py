@@ -1,4 +1,4 @@
-"""The bundled studies in three sizes: as in the paper, smaller, and on finer grids."""
+"""The bundled studies in three sizes: as in the paper, reduced, and on finer grids."""
 
 from __future__ import annotations
 
@@ -46,8 +46,8 @@ _QUICK: dict[str, dict[str, Any]] = {
     "rough-yield": {"grid.nodes": 256, "indentation.to": "1 um", "indentation.steps": 8},
     "rough-energy": {"grid.nodes": 256, "indentation.to": "1 um", "indentation.steps": 8},
 }
-# Changes of the study files for the size "refined". The grid spacing in these files does not
-# resolve rough contacts at indentations smaller than some tens of nanometres.
+# Changes of the study files for the size "refined". Without these changes, the grids do not resolve
+# rough contacts at indentations smaller than some tens of nanometres.
 _REFINED: dict[str, dict[str, Any]] = {
     name: {"grid.refine": 2} for name in ("roughness", "rough-yield", "rough-energy")
 }

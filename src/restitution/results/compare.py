@@ -107,7 +107,7 @@ def _curves(
 
 
 def _weights(depths: NDArray[np.float64], depth: float) -> dict[int, float]:
-    """Return the weights for interpolating a curve at `depth`, by row number.
+    """Return, by row number, the weights of the rows that interpolate a curve at `depth`.
 
     The rows of the curve have the depths `depths`. The result is empty if `depth` is outside their
     range.

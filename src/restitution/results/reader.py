@@ -74,7 +74,7 @@ class _Diagnostics(_Stored):
 
 
 class _Summary(_Stored):
-    """The keys of `summary.json` that readers use."""
+    """The keys of `summary.json` that this program reads."""
 
     title: str
     status: str
@@ -148,7 +148,7 @@ class RunResults:
         return results
 
     def smooth(self) -> xr.Dataset:
-        """The curves of the smooth bodies in `results.nc`, with all attributes of the file."""
+        """The smooth bodies' variables of `results.nc`, and all attributes of the file."""
         with _opened(self._netcdf) as stored:
             return stored[[name for name in stored if str(name).startswith("smooth_")]].load()
 

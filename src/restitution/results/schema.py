@@ -25,7 +25,7 @@ class Column:
     flag: bool = False
 
     def labelled(self, along: str | tuple[str, ...], values: object) -> tuple[object, ...]:
-        """Make the variable of `results.nc` that has the dimensions `along` and these `values`."""
+        """Make a variable of `results.nc` with the dimensions `along` and the values `values`."""
         return along, values, {"units": self.unit, "long_name": self.meaning}
 
 

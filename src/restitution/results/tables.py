@@ -72,9 +72,9 @@ def read_numbers(
     cells: Mapping[str, str],
     columns: Mapping[str, Column] = ALL_COLUMNS,
 ) -> dict[str, float]:
-    """Convert the cells of one row to numbers, for those of `columns` that the row has.
+    """Convert the cells of one row to numbers, for all `columns` that are present in the row.
 
-    Raises `OutputError` for a cell that a run cannot have written.
+    Raises `OutputError` if a cell holds a value that no run writes.
     """
     return {
         name: _number(path, f"line {line}: {name}", column, cells[name])

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 def total(row: Mapping[str, float]) -> float:
     """Root sum of squares of the known errors of a row.
 
-    COR is between 0 and 1, so its error is limited to the larger of COR and 1 − COR.
+    COR lies between 0 and 1, so its error cannot exceed the larger of COR and 1 − COR.
     """
     parts = ("restitution_error", "discretisation_error", "surface_scatter", "material_error")
     known = [error for name in parts if not math.isnan(error := row.get(name, math.nan))]

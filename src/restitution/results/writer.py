@@ -56,8 +56,8 @@ def curve_row(
 ) -> dict[str, float]:
     """Make the row of `curve.csv` for one state of loading, with NaN for undefined values.
 
-    `refine` is the refinement factor of the grid. `touch` (m) is the approach to first touch on
-    this grid minus the approach to first touch on the finest grid. It is added to the indentations.
+    `refine` is the refinement factor of the grid. `touch` (m) is the extra approach to first touch
+    on this grid, compared with the finest grid. It is added to the indentations.
     """
     patches = state.patch_sizes()
     median = median_patch(patches)
@@ -367,7 +367,7 @@ def oblique_variables(rows: Sequence[Mapping[str, float]]) -> dict[str, Any]:
 
 
 def format_cell(value: float | str) -> str:
-    """Format the cell of a table: true or false, empty for NaN, or a number with all digits."""
+    """Format a cell of a table: "true" or "false", "" for NaN, or a number with all digits."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):

@@ -1,10 +1,10 @@
 """Companion curves of a run: additional curves that show how COR changes with the input.
 
 All companion curves are computed on cells twice as large as those of the run, so each of them takes
-about a fifth of the time of the run. One companion curve has the surface and the materials of the
-run and is compared with the run. The other companion curves have another surface or other materials
-and are compared with the first companion curve. All comparisons are made at equal impact velocity,
-that is, at equal loading work if the masses are equal.
+about a fifth of the time of the run. The first companion curve has the surface and the materials of
+the run, and is compared with the run. Every other companion curve has another surface or other
+materials, and is compared with the first companion curve. COR is always compared at equal impact
+velocity. If the masses are equal, the loading work is then equal, too.
 """
 
 from __future__ import annotations
@@ -38,8 +38,8 @@ _TOLERANCE = 0.005  # allowed error of COR due to the steps of adhesive unloadin
 # Energy losses up to this fraction of the loading work count as rounding errors of elastic impacts.
 _LOSSLESS = 1e-6
 
-# Two depths are added: the smallest depth times the first factor, and the largest depth times the
-# second factor. They are needed because other surfaces reach the same work at other depths.
+# A companion curve has two more depths than the run: the smallest depth times the first factor, and
+# the largest depth times the second factor. Other surfaces reach the same work at other depths.
 _SHALLOWER, _DEEPER = 0.5, 1.3
 
 
@@ -83,7 +83,7 @@ def curve_of(
     """Compute the curve of `contact` at `depths` (m) and at one more depth beyond each end.
 
     `tolerance` is the allowed error of COR due to the steps of adhesive unloading. A depth that
-    fails is left out. The first contact that reaches the edge of the grid ends the curve.
+    cannot be solved is left out. The curve ends where the contact reaches the edge of the grid.
     """
     works: list[float] = []
     returned: list[float] = []
@@ -106,7 +106,10 @@ def curve_of(
 
 @dataclass(frozen=True)
 class Companions:
-    """The companion curves of `case` at `depths` (m); file names are relative to `folder`."""
+    """The companion curves of `case` at `depths` (m).
+
+    File names in the case are relative to `folder`.
+    """
 
     case: Case
     folder: Path
@@ -137,10 +140,10 @@ class Companions:
     def materials(self, work: Array) -> list[Array]:
         """Changes of COR at `work` (J) due to the spread of values from the material library.
 
-        Elasticity, yield model and density cause one change each, unless they have no spread. The
-        values of both bodies are set together to the low end and then to the high end of the
-        spread, and the larger change of COR is used. The list is empty if no value comes from the
-        library.
+        The list has one change for elasticity, one for the yield model and one for density. A
+        change is left out if its values have no spread, so the list may be empty. To find a change,
+        the values of both bodies are set to the low end of their spread, and then to the high end.
+        The larger of the two changes of COR is used.
         """
         coarse = self.coarse
         ends = [_spread(self.case, end) for end in ("low", "high")]
@@ -186,7 +189,7 @@ def _with_modulus_of(pair: Pair, other: Pair) -> Pair:
 
 
 def _yielding(case: Case) -> Yielding:
-    """Yield model of `case`; the default model if no strength is known for the softer body."""
+    """Yield model of `case`, or the default model if the case lacks a value for its model."""
     try:
         return case.yielding()
     except CaseError:
@@ -196,7 +199,10 @@ def _yielding(case: Case) -> Yielding:
 
 
 def _spread(case: Case, end: str) -> Case:
-    """Return `case` with its material-library values at the `low` or `high` end of their spread."""
+    """Return `case` with all values from the material library at one end of their spread.
+
+    `end` is "low" or "high".
+    """
 
     def moved(body: BodyTable) -> BodyTable:
         found = body.from_library()

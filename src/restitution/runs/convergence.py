@@ -4,12 +4,12 @@ With COR f₁, f₂, f₃ on cells of size h, h/2, h/4 of the same surface,
 
     error of f₃ = max(1.5 |f₃ − f₂|, 0.5 |f₂ − f₁|),   observed order = log₂((f₂ − f₁)/(f₃ − f₂)).
 
-The COR of rough contacts oscillates with h more often than it follows a power of h. Richardson
-extrapolation (Roache 1994, J. Fluids Eng. 116, 405–413) would mostly divide by random numbers.
-Instead, convergence of first order is assumed. Each of the two differences then gives an error of
-f₃: |f₃ − f₂| and 0.5 |f₂ − f₁|. The first is multiplied by a safety factor of 1.5. The larger error
-is used; it exceeded the true error in 95 % of the cases of docs/resolution.md. On two grids the
-error is 3 |f₂ − f₁|.
+Richardson extrapolation (Roache 1994, J. Fluids Eng. 116, 405–413) is not used, because the COR of
+rough contacts oscillates with h more often than it follows a power of h. Instead, convergence of
+first order is assumed. The last two grids then give |f₃ − f₂| as the error of f₃, and the first two
+grids give 0.5 |f₂ − f₁|. The estimate |f₃ − f₂| is multiplied by a safety factor of 1.5. The larger
+of the two estimates is used; it exceeded the true error in 95 % of the cases of docs/resolution.md.
+If there are only two grids, the error of f₂ is 3 |f₂ − f₁|.
 """
 
 from __future__ import annotations
@@ -49,8 +49,8 @@ from restitution.runs.log import RunLog, Say, ignore
 from restitution.runs.refinement import settled, with_chosen_adhesion
 from restitution.runs.run import run_case
 
-# The results on each grid, by its refinement factor: how much later this grid touches than the
-# finest grid (approach in m), and the rows of its curve.
+# For the refinement factor of each grid: the extra approach (m) to first touch, compared with the
+# finest grid, and the rows of the curve on this grid.
 _Runs = dict[int, tuple[float, list[Row]]]
 
 
@@ -70,10 +70,9 @@ def run_convergence(
     finest grid with its `discretisation_error`, and `convergence.csv` has a row for every depth and
     grid. If a run fails, the study ends and keeps the results so far.
 
-    Depths are measured from first touch on the finest grid. The highest summit lies between the
-    nodes of a coarser grid, so a coarser grid touches after a larger approach. Its indentations,
-    measured from its own first touch, are therefore smaller by the difference of the two
-    approaches.
+    Depths are measured from first touch on the finest grid. A coarser grid touches later, because
+    the highest summit lies between its nodes. Its indentation, measured from its own first touch,
+    is therefore smaller than the depth.
     """
     case.require_impact()
     log, runs = RunLog(progress, warn), _Runs()
@@ -118,8 +117,8 @@ def _add_errors(
 ) -> None:
     """Add the errors due to surface and materials to the rows of the finest grid.
 
-    Also add `errors_known`, which is true if all of these errors could be computed. Also add
-    `unseen_yield` and `octaves` (see `error_budget`), from which `_with_grid_errors` computes the
+    Three more values are added. `errors_known` says whether all of these errors could be computed.
+    `_with_grid_errors` uses `unseen_yield` and `octaves` (see `error_budget`) for the
     discretisation error. Rows whose loading work is not positive stay unchanged.
     """
     reached = [row for row in runs[max(runs)][1] if row["loading_work_J"] > 0]
@@ -139,9 +138,9 @@ def _add_errors(
 
 
 def _levels(case: Case, folder: Path, grids: int) -> dict[int, float]:
-    """Return the additional approach (m) to first touch for each refinement factor.
+    """Return, for each refinement factor, the extra approach (m) to first touch on its grid.
 
-    It is the approach to first touch on the grid with this factor minus that on the finest grid.
+    The extra approach is the difference from the approach on the finest grid.
     """
     if grids < 2:
         raise CaseError(f"grids: a study on {grids} grid cannot show convergence; give 2 or more")
@@ -162,7 +161,7 @@ def _levels(case: Case, folder: Path, grids: int) -> dict[int, float]:
 
 
 def _pressed_less(case: Case, later: float) -> Case:
-    """Reduce the indentations of `case` by `later` (m), the additional approach to first touch.
+    """Reduce the indentations of `case` by `later` (m), the extra approach to first touch.
 
     Indentations without contact are left out.
     """
@@ -246,10 +245,12 @@ def _with_grid_errors(rows: list[Row]) -> int:
 
     The first part is a minimum error, because differences of COR between grids may vanish by
     chance. The second part is the effect of the waves that the finest grid leaves out of a scan.
-    The third part is the effect of nodes that would yield only on a finer grid. Rows without the
-    values of `_add_errors`, or with an unknown discretisation error, stay unchanged. The total
-    error is set only if all of its parts are known. Rows in which the omitted waves change COR by
-    more than `MISSING_BAND` are marked as not resolved. Returns the number of these rows.
+    The third part is the effect of nodes that would yield only on a finer grid.
+
+    A row stays unchanged if it lacks the values of `_add_errors` or a discretisation error. The
+    total error of a row is set only if all of its parts are known. If the omitted waves change COR
+    by more than `MISSING_BAND`, the row is marked as not resolved. Returns the number of rows that
+    were marked.
     """
     lacking = 0
     for row in rows:
@@ -309,11 +310,12 @@ def discretisation(values: Sequence[float]) -> tuple[float, float]:
 
 
 def observed_order(depths: Sequence[dict[int, Row]]) -> float:
-    """Observed order of the last three grids, from differences of COR (rms over depths).
+    """Observed order of convergence of COR on the last three grids.
 
-    The rms is used because the orders of single depths scatter. Only depths that the finest grid
-    resolves and that all three grids reach are used. The result is NaN for fewer than three grids,
-    without such depths, or if COR does not change between two grids.
+    The differences of COR between grids are averaged over the depths (rms), because the orders of
+    single depths scatter. A depth is used only if the finest grid resolves it and all three grids
+    reach it. The result is NaN for fewer than three grids, without such depths, or if COR does not
+    change between two grids.
     """
     factors = sorted({factor for rows in depths for factor in rows})[-3:]
     steps = np.array(

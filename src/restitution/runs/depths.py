@@ -26,8 +26,8 @@ class Depth:
     """One depth of a case, after loading.
 
     `asked` is the prescribed value (m, N or m/s), and `refine` the refinement factor of the grid on
-    which the depth is solved. `touch` (m) is the approach to first touch on this grid minus that on
-    the finest grid. `state` is None if loading failed with `error`.
+    which the depth is solved. `touch` (m) is the extra approach to first touch on this grid,
+    compared with the finest grid. `state` is None if loading failed with `error`.
     """
 
     asked: float
@@ -71,12 +71,12 @@ def load_to(case: Case, contact: Contact, depth: float, start: State | None = No
 def loaded_depths(case: Case, folder: Path, contact: Contact) -> Iterator[Depth]:
     """Load to every depth of `case`, from the shallowest to the deepest.
 
-    `contact` is the contact on the grid of the deepest depth, and files are relative to `folder`.
-    Each load starts from the previous state on the same grid.
+    `contact` is the contact on the grid of the deepest depth. File names in the case are relative
+    to `folder`. Each load starts from the previous state on the same grid.
     """
     factors = case.factors()
-    # A coarse grid first touches at a larger approach than the finest grid. The difference is added
-    # to all stored indentations, even if loads or velocities are prescribed.
+    # A coarse grid first touches at a larger approach than the finest grid. The extra approach is
+    # added to all stored indentations, even if loads or velocities are prescribed.
     touches = later_touches(case, folder, set(factors)) if len(set(factors)) > 1 else {}
     for factor in sorted(set(factors), reverse=True):
         last = factor == factors[-1]
@@ -94,7 +94,7 @@ def loaded_depths(case: Case, folder: Path, contact: Contact) -> Iterator[Depth]
 def collision_at(
     case: Case, state: State, *, unload: bool = False, known: Sequence[State] = ()
 ) -> tuple[Collision, Sequence[State]]:
-    """Return the collision with the maximum indentation of `state`, and the unloading curve.
+    """Return the collision whose deepest state is `state`, and its unloading curve.
 
     The curve is computed if `unload` is true or if the collision needs it; otherwise it is empty.
     `known` is the unloading curve of a shallower depth, which `unloading_path` may reuse.

@@ -61,9 +61,10 @@ def run_realisations(
 
     A periodic case is run by `run_periodic`. A single surface is run by `run_case` alone. If there
     are several surfaces, the run on surface n (n = 1, 2, …) is stored in a folder
-    `realisation-<n>`, and the curve of `out` contains the means (`mean_rows`). Surface n has the
-    seed (or the place on the scan) of the case plus n − 1. If the run on a surface fails, its error
-    is recorded and the other runs continue. If all runs fail, the first error is raised. With
+    `realisation-<n>`, and the curve of `out` contains the means (`mean_rows`). The seed of
+    surface n is the seed of the case plus n − 1. For a scan without a seed, `place` (the part of
+    the scan that is used) increases in the same way. If the run on a surface fails, its error is
+    recorded and the other runs continue. If all runs fail, the first error is raised. With
     `grid.refine = "auto"`, the first surface decides the grid of each depth for all surfaces
     (`refinement`).
     """
@@ -134,7 +135,7 @@ class _Ensemble:
             )
 
     def _add_errors(self) -> None:
-        """Estimate the errors due to grid and materials on the surface with the most depths.
+        """Estimate the errors due to grid and materials, on the surface that reached most depths.
 
         The scatter between surfaces follows from the ensemble itself.
         """
@@ -237,9 +238,9 @@ def mean_rows(curves: Sequence[Sequence[Row]], errors: Sequence[Row] = ()) -> li
     COR, and the ends of the 95 % confidence interval of the mean COR. The interval is
     mean ± t s/√n with Student's t, clipped to [0, 1]. With one surface, s and the ends are NaN.
 
-    `errors` are the rows of one surface with the errors due to grid and materials. These errors are
-    used for the means, too. `surface_scatter` is half of the width of the confidence interval. The
-    total error of a depth that only one surface reached stays unknown.
+    `errors` are the rows of one surface, with the errors due to grid and materials. The means get
+    the same errors. `surface_scatter` is half of the width of the confidence interval. If only one
+    surface reached a depth, the total error of this depth stays unknown.
     """
     rows = []
     for depth in range(max(map(len, curves), default=0)):

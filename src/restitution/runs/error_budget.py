@@ -4,17 +4,16 @@
 
 A row holds the results of one depth. Errors are differences from the exact COR of the pair at the
 impact velocity of the row. The exact COR is the mean over surfaces of the same kind, on a grid that
-resolves all waves of the surface.
-ΔCOR is the change of COR on cells twice as large, without the shortest octave of waves
-(`companions`):
+resolves all waves of the surface. The discretisation error has three parts:
 
     discretisation_error² = ΔCOR² [1 + (1.5 n)²] + (q² D)² + (s f)²,   n = ln(S/S_h)/ln(S_h/S_2h).
 
-S is the rms slope of the scan. S_h is the rms slope on cells of size h, the cell size of the run,
-and S_2h is the rms slope on cells of size 2h. The waves that the grid leaves out change ln S by n
-times as much as the last octave that the grid resolves. The formula assumes that these omitted
-waves change COR by n ΔCOR. The safety factor is 1.5. For generated surfaces n = 0 and S = S_h,
-because their definition includes the shortest wave.
+ΔCOR is the change of COR if the cells are twice as large and the surface loses its shortest octave
+of waves (`companions`). S is the rms slope of the scan. S_h is the rms slope on cells of size h,
+the cell size of the run, and S_2h is the rms slope on cells of size 2h. The waves that the grid
+leaves out change ln S by n times as much as the shortest octave that the grid resolves. The formula
+assumes that these waves change COR by n ΔCOR. It multiplies n ΔCOR by a safety factor of 1.5. For
+generated surfaces n = 0 and S = S_h, because their definition includes the shortest wave.
 
 D is the change of COR on cells of size 2h if the yield pressure is multiplied by (S_2h/S)². Waves
 that a grid lacks raise the local pressure. Therefore, a contact may yield on a finer grid although
@@ -22,10 +21,10 @@ it is elastic on cells of size h and 2h. ΔCOR then vanishes, and only D account
 q is the elastic energy stored in loading, divided by the sum of this energy and the plastic work.
 The factor q² reduces D if nodes already yield, because these nodes yield on a finer grid, too.
 
-f is the usual error of contacts whose median patch has the same number of nodes. Half of the
-contact nodes lie in patches of at least the size of the median patch (docs/resolution.md). s is the
-fraction of f that is added. s is large if the grid does not resolve the contact. Otherwise s is
-small, and its only purpose is to keep the error from vanishing by chance.
+f is the usual error of COR for the number of nodes in the median patch. Half of the contact nodes
+lie in patches of at least the size of the median patch (docs/resolution.md). s is the fraction of f
+that is added. s is large if the grid does not resolve the contact. Otherwise s is small, and its
+only purpose is to keep the error from vanishing by chance.
 
 The constants of these formulas were chosen on about 400 random cases, 30 of them adhesive, and
 checked on other cases (docs/error.md).
@@ -51,13 +50,14 @@ from restitution.surfaces.refine import coarsen
 
 Row = dict[str, float]
 
-_BAND = 1.5  # safety factor on the change of COR expected from waves that the grid leaves out
+# Safety factor on the change of COR that the waves left out by the grid are expected to cause.
+_BAND = 1.5
 # Exponent of S_2h/S in the term D (see the top of this file). It exceeds 1 because the largest
 # pressures rise more than the rms slope.
 _PEAKS = 2
 
 # The fraction s (see the top of this file) for resolved and for unresolved contacts. For unresolved
-# contacts it is interpolated between its values at 3 and at 7 nodes in the median patch.
+# contacts, s is interpolated between its values at 3 and at 7 nodes in the median patch.
 _SHARE_RESOLVED = 0.03
 _FEW_NODES, _SHARE_UNRESOLVED = (3, 7), (0.6, 0.1)
 # The error f of COR as a function of the number of nodes in the median patch. In about 90 % of the
@@ -66,8 +66,8 @@ _FEW_NODES, _SHARE_UNRESOLVED = (3, 7), (0.6, 0.1)
 _PATCH_NODES = (1, 3, 7, 14, 30, 100, 400)
 _PATCH_ERROR = (0.9, 0.4, 0.15, 0.08, 0.05, 0.024, 0.008)
 CONFIDENCE = 0.95  # level of the confidence interval of a mean COR over surfaces
-# Differences of COR between grids and between surfaces are smoothed over these lengths, in the
-# logarithm of the loading work, because single differences may vanish by chance.
+# Differences of COR between grids and between surfaces are smoothed over the loading work, because
+# single differences may vanish by chance. These are the widths of the smoothing in ln(work).
 _NEAR_GRID, _NEAR_SURFACE = 2.0, 1.0
 MOST_AFFORDABLE = 2**24  # largest recommended number of nodes (takes some minutes and 2 GB)
 
@@ -86,7 +86,7 @@ class Band:
 
     `octaves` is n in the formula of the module docstring, 0 if no wave is left out. `coarser_slope`
     is S_2h/S in the same formula, 1 for a plane. `removed_slope` is the rms slope of the omitted
-    waves, divided by that of the scan. `pixel` is the spacing (m) that resolves these waves.
+    waves, divided by the rms slope of the scan. `pixel` is the spacing (m) that resolves them.
     """
 
     octaves: float
@@ -111,8 +111,8 @@ class Band:
 def unseen_yield(companions: Companions, waves: Band, rows: Sequence[Row]) -> Array:
     """Error of COR of `rows` due to nodes that would yield only on a finer grid.
 
-    It is the term q² D of the formula in the module docstring. `waves` describes the waves that the
-    grid of the rows leaves out.
+    This is the term q² D of the formula at the top of this file. `waves` describes the waves that
+    the grid of the rows leaves out.
     """
     work, stored, plastic = (
         np.array([row[name] for row in rows])
@@ -142,11 +142,12 @@ def grid_error(
 def widened_error(
     error: float, last_change: float, unseen: float, row: Row, octaves: float
 ) -> tuple[float, float]:
-    """Add a minimum error, unseen yielding and omitted waves to `error`, in quadrature.
+    """Widen `error`, the discretisation error of COR from a convergence study.
 
-    `error` comes from a convergence study. `last_change` is the difference of COR between the last
-    two grids. `unseen` comes from `unseen_yield`, and `octaves` is `Band.octaves`. Returns the sum
-    and the part due to the omitted waves.
+    Three errors are added in quadrature: a minimum error, the error `unseen` (from `unseen_yield`),
+    and the error due to waves of the scan that the grid leaves out. The latter follows from
+    `last_change`, the difference of COR between the last two grids, and from `Band.octaves`.
+    Returns the sum and the error due to these waves.
     """
     band = _BAND * octaves * last_change
     return math.hypot(error, band, unseen, _floor(row)), band
@@ -171,10 +172,10 @@ def scatter(restitution: Array, work: Array) -> Array:
 
 
 def half_interval(surfaces: int) -> float:
-    """Half the width of the 95 % confidence interval of the mean COR of `surfaces` surfaces.
+    """Ratio of the half width of a confidence interval to the sample standard deviation of COR.
 
-    The result is divided by the sample standard deviation of COR over the surfaces. So it is t/√n,
-    with Student's t and the number n of surfaces. It is NaN for one surface.
+    The interval is the 95 % confidence interval of the mean COR of `surfaces` surfaces. The ratio
+    is t/√n, with Student's t and the number n of surfaces. It is NaN for one surface.
     """
     # stdtrit is the quantile of Student's t. Importing scipy.stats would take 30 MB more memory.
     from scipy.special import stdtrit
@@ -187,8 +188,8 @@ def spread_errors(
 ) -> dict[str, Array]:
     """Errors of COR at `work` (J) due to the surface and to the spread of library materials.
 
-    The keys are `surface_scatter` and `material_error`. A key is absent if the case of `companions`
-    has no roughness or no library values. If `scattered` is false, `surface_scatter` is absent.
+    The keys are `surface_scatter` and `material_error`. `surface_scatter` is absent if the case has
+    no roughness or `scattered` is false. `material_error` is absent without library values.
     """
     case = companions.case
     columns = {}
@@ -343,7 +344,7 @@ def _smoothed(values: Array, work: Array, near: float) -> Array:
     """Smooth `values` over the loading work (J); all NaN if any value is NaN.
 
     The result is a weighted mean with the weights exp(−Δ/near). Here Δ is the difference of
-    ln(work) between two values.
+    ln(work) between two values, and `near` is the width of the smoothing in ln(work).
     """
     L = np.log(work)
     weights = np.exp(-np.abs(L[:, None] - L) / near)

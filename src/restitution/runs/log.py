@@ -56,8 +56,9 @@ class RunLog:
     def warnings_of(self, part: ResultsFolder) -> Say:
         """Return a `warn` function for one of several runs.
 
-        The function passes on the warnings that are issued before the run has its first result. It
-        drops later warnings about the results, because the summary of all runs replaces them.
+        The function passes on the warnings about the input, that is, those issued before the run
+        has its first result. It drops later warnings, because the summary of all runs replaces
+        them.
         """
 
         def say(warning: str) -> None:
@@ -68,11 +69,11 @@ class RunLog:
 
     @contextmanager
     def record(self, out: ResultsFolder, keep: Callable[[], dict[str, Any]]) -> Iterator[None]:
-        """Record how the `with` body ends, let `keep` write the results, and issue their warnings.
+        """Record how the `with` body ends, and let `keep` write the results.
 
-        `keep` returns the summary, which is stored in the attribute `summary`. If nothing was
-        computed, the summary is empty and the folder is removed. Errors of the body are raised
-        again.
+        `keep` returns the summary. It is stored in the attribute `summary`, and the warnings in it
+        are issued. If nothing was computed, the summary is empty and the folder is removed. Errors
+        of the body are raised again.
         """
         try:
             yield

@@ -33,9 +33,10 @@ _ERRORS: dict[Code, type[RestitutionError]] = {
     "pixel-above-contact": SurfaceError,
     "range-unresolved": CaseError,
 }
-# `no_range` warns only if the energy lost by adhesion is at most this fraction of JKR's loss.
+# `no_range` warns only if smooth bodies lose at most this fraction of the energy that JKR predicts.
 _NEARLY_JKR = 0.9
-# Ratio of the predicted contact radius to the half width of the grid above which a run will fail.
+# A run will fail if the predicted contact radius is larger than this factor times half the width of
+# the grid.
 _FAR_BEYOND = 2.0
 _KEYS = {"force": "load", "velocity": "impact"}  # argument of a solver: key of the case file
 # How to avoid a contact that is too large, for each table that prescribes the depths.
@@ -63,9 +64,10 @@ def input_warnings(
 
 
 def failure_at_edge(contact: Contact, indentation: float, prescribed: str) -> str | None:
-    """Say that a run to `indentation` (m) will fail, if its contact is far larger than the grid.
+    """Return a sentence which says that a run to `indentation` (m) will fail, or None otherwise.
 
-    `prescribed` is the table of the case file that prescribes the depths.
+    The run will fail if the predicted contact is far larger than the grid. `prescribed` is the
+    table of the case file that prescribes the depths.
     """
     if contact.periodic:
         return None
@@ -80,9 +82,9 @@ def failure_at_edge(contact: Contact, indentation: float, prescribed: str) -> st
 
 
 def no_range(contact: Contact) -> list[str]:
-    """Return a warning if a coarse grid makes `contact` neglect the range of the attraction.
+    """Return a warning if `contact` neglects the range of the attraction because of a coarse grid.
 
-    The list is empty otherwise.
+    The list is empty if no warning is needed.
     """
     if contact.cohesive:
         return []

@@ -104,14 +104,14 @@ def _row(
     """Compute one impact.
 
     If a row of the curve has nearly the prescribed normal velocity, the impact is computed at the
-    velocity of this row, and the total error of this row is the error of the normal restitution.
+    velocity of this row. The error of the normal restitution is then the total error of this row.
     """
     normal = velocity * math.cos(angle)
     nearest = min(rows, key=lambda row: _apart(row, normal))
     error = math.nan
     if _apart(nearest, normal) < _SAME:
-        # A run reaches the velocities of its case only within the error of the loading work, so use
-        # the velocity that it reached.
+        # A run reaches the prescribed velocities only within the error of the loading work. Use the
+        # velocity that the run reached.
         normal = nearest["impact_velocity_m_per_s"]
         error = nearest["total_error"]
     found = collide_obliquely(law, normal / math.cos(angle), angle, friction, spins)
@@ -148,9 +148,9 @@ def _cells(
 def _errors(law: StoredForce, found: ObliqueCollision, error: float) -> _Row:
     """Errors of the tangential results, which include the `error` of the normal restitution.
 
-    A change de of the normal restitution changes the friction impulse by at most µ m* V_n de, which
-    is the change in full slip. µ is the coefficient of friction, m* the reduced mass, and V_n the
-    normal velocity before the impact.
+    If the normal restitution changes by Δe, the friction impulse changes by at most µ m* V_n Δe.
+    This is its change if the whole contact slides. µ is the coefficient of friction, m* the reduced
+    mass, and V_n the normal velocity before the impact.
     """
     normal_velocity = found.velocity * math.cos(found.angle)
     impulse = found.friction * error * (law.pair.mass or math.nan) * normal_velocity
@@ -158,8 +158,8 @@ def _errors(law: StoredForce, found: ObliqueCollision, error: float) -> _Row:
     tangential = math.nan
     if tangent > 0:
         tangential = found.tangential_restitution_error + found.friction * error / tangent
-    # The angle of rebound is atan(e_t tan θ/e_n), with the tangential and normal restitution e_t
-    # and e_n, and the angle of impact θ.
+    # The angle of rebound is atan(e_t tan θ/e_n). Here e_t is the tangential restitution, e_n the
+    # normal restitution, and θ the angle of impact.
     rebound = math.tan(found.rebound_angle)
     shift = tangent * (tangential if tangent > 0 else 0.0) + abs(rebound) * error
     turned = [

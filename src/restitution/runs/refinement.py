@@ -36,7 +36,7 @@ def settled(case: Case, folder: Path, warn: Say = ignore) -> Case:
     if case.grid.refine != "auto":
         return case
     depths = case.depths()
-    factors: list[int] = []  # factors found so far: those of the largest depths
+    factors: list[int] = []  # the factors found so far belong to the largest depths
     finest, why, nodes = 1, "", (1, 1)
     for factor in FACTORS:
         if factor > 1 and factor**2 * nodes[0] * nodes[1] > MOST_NODES:
@@ -91,6 +91,6 @@ def _resolves(case: Case, contact: Contact, depth: float) -> bool:
         patches = load_to(case, contact, depth).patch_sizes()
     except DomainError:  # the contact reaches the edge; the run will report this
         return True
-    except NotConvergedError:  # force or work may jump if too few nodes are in contact
+    except NotConvergedError:  # with too few contact nodes, force or work may jump
         return False
     return median_patch(patches) >= _MARGIN * NODES_PER_PATCH

@@ -214,8 +214,9 @@ def _check(state: State, back: Sequence[State], collision: Collision) -> dict[st
 def _unbalance(state: State, end: State, work: float, lost: float) -> float:
     """Return the relative error of the energy balance of an unloading curve.
 
-    The error is `work` (J) minus the work that the balance predicts, divided by the stored energy.
-    `lost` is the energy (J) that adhesion dissipates on the way from `state` to `end`.
+    The error is the difference between `work` (J) and the work that the balance predicts, relative
+    to the stored energy. `lost` is the energy (J) that adhesion dissipates between `state` and
+    `end`.
     """
     if isinstance(state, CohesiveState) and isinstance(end, CohesiveState):
         released = state.potential_energy - end.potential_energy
@@ -344,7 +345,7 @@ def _adhesion_of(contact: Contact, case: Case) -> dict[str, Any]:
 
 
 def _unbalanced(checks: list[dict[str, float]]) -> Iterator[str]:
-    """Yield a warning if the work of an unloading curve differs too much from the stored energy."""
+    """Yield a warning if unloading without adhesion does not return the stored energy."""
     off = [check for check in checks if not abs(check["relative_to_stored_energy"]) <= _BALANCE]
     if off:
         worst = max(off, key=lambda check: abs(check["relative_to_stored_energy"]))

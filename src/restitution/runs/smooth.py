@@ -16,8 +16,8 @@ from restitution.contact.loading import solve
 from restitution.numerics.grid import Grid
 from restitution.theory import FirstYield, Hertz
 
-# Number of nodes along each edge of a grid, 32 per predicted contact radius. This number is ample,
-# because eight nodes per contact radius already keep the error of COR below 0.3 %.
+# Number of nodes along each edge of a grid: 32 nodes per predicted contact radius. Eight nodes per
+# contact radius would already keep the error of COR below 0.3 %.
 _NODES = 80
 _WIDTH = 2.5  # ratio of the width of a grid to the predicted contact radius
 _DEPTHS = 20  # number of depths up to yield; the same number of depths is used beyond yield
@@ -29,18 +29,18 @@ def smooth_curve(
     """Make the variables of results.nc for the smooth bodies: force, restitution and velocity.
 
     The curve spans the depths and velocities of `rows`. Up to yield it is Hertz's solution. Beyond
-    yield, each depth is solved on a separate small grid. The result is empty for the `truncated`
-    model, because Thornton and Ning's formulas describe its smooth contact. It is also empty for
-    adhesive contacts, because small grids do not resolve adhesion. `check` is called before every
-    solve, and may raise an error to end the curve. Raises the errors of `solve`.
+    yield, each depth is solved on a separate small grid. The result is empty for the yield model
+    `truncated`, because Thornton and Ning's formulas describe smooth bodies with this model. It is
+    also empty for adhesive contacts, because small grids do not resolve adhesion. `check` is called
+    before every solve, and may raise an error to end the curve. Raises the errors of `solve`.
     """
     pair, p_y = contact.pair, contact.hardness
     R, E_star = pair.radius, pair.contact_modulus
     if contact.plasticity == "truncated" or contact.adhesive or not rows:
         return {}
     last = max(row["max_indentation_m"] for row in rows)
-    # Smooth bodies reach the same work at a smaller depth than rough ones, so their curve may begin
-    # at a smaller depth.
+    # Smooth bodies reach the same loading work at a smaller depth than rough bodies, so the smooth
+    # curve may begin at a smaller depth.
     least = min(row["loading_work_J"] for row in rows)
     hertz = Hertz(R, E_star)
     first = min(

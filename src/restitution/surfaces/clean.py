@@ -75,11 +75,12 @@ def crop(surface: Surface, *, x: Range | None = None, y: Range | None = None) ->
 def remove_outliers(surface: Surface, threshold: float) -> Surface:
     """Replace outliers by harmonic interpolation of the pixels around them.
 
-    First the least-squares paraboloid is subtracted from a copy of the heights. On a slope, a pixel
-    would often equal the median of its neighbours, which hides the outliers. Each height is then
-    compared with the median of the 5 x 5 pixels around it. A pixel is an outlier if this difference
-    exceeds `threshold` standard deviations. The standard deviation of the differences is estimated
-    from their median absolute value, because outliers hardly change a median.
+    First the least-squares paraboloid is subtracted from a copy of the heights. (On a slope, a
+    pixel would often equal the median of its neighbours, so outliers could remain hidden.) Each
+    height is then compared with the median of the 5 x 5 pixels around it. A pixel is an outlier if
+    it differs from this median by more than `threshold` standard deviations. The standard deviation
+    of these differences is estimated from their median absolute value, because outliers hardly
+    change a median.
 
     The number of outliers and their largest difference are added to the provenance.
 

@@ -32,9 +32,9 @@ def composite(surfaces: Sequence[Surface]) -> Surface:
     them first.
 
     The provenance of the sum contains the provenance of each part, with the prefixes `part_1_`,
-    `part_2_`, … It also states the files, the largest pixel size, whether all parts are periodic,
-    and whether maps are drawn with y downwards, as for a single scan. For resampled parts, it also
-    states the rms height and slope of the removed waves.
+    `part_2_`, … As for a single scan, it also states the files, the direction in which maps show y,
+    and the pixel size (of the part with the largest pixels). It states whether all parts are
+    periodic. For resampled parts, it states the rms height and slope of the removed waves.
 
     Args:
         surfaces: Surfaces on the same grid.

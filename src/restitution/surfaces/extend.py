@@ -1,6 +1,7 @@
-"""Extend a scan beyond the measured area, by tiles of mirror images or by a statistical twin.
+"""Extend a scan beyond the measured area, by mirror images or by a statistical twin.
 
-In both cases the result is not the measured surface, as the `notice` in its provenance states.
+A twin is a random surface with the statistics of the scan. In both cases the result is not the
+measured surface, as the `notice` in its provenance states.
 """
 
 from __future__ import annotations

@@ -27,8 +27,8 @@ from restitution.surfaces.surface import Array, Surface
 RoughnessKind = Literal["exponential", "gaussian", "self-affine"]
 
 # A non-periodic surface is cut from a larger periodic surface, so that opposite edges are
-# uncorrelated. The additional length along each axis is at most this factor times
-# `Spectrum.longest`.
+# uncorrelated. The additional length along each axis is at most this factor times the correlation
+# distance `Spectrum.longest`.
 _MARGIN = 2.0
 
 
@@ -159,7 +159,7 @@ def _spectrum(kind: RoughnessKind, waves: Waves) -> Spectrum:
 def _heights(
     grid: Grid, spectrum: Spectrum, seed: int, wanted: tuple[float, float], periodic: bool
 ) -> tuple[Array, dict[str, str | float]]:
-    """Generate heights with the skewness and kurtosis `wanted`; their rms value is arbitrary.
+    """Generate heights with the skewness and kurtosis `wanted`, and with an arbitrary rms height.
 
     Also return provenance entries that name the method.
     """

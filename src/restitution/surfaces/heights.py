@@ -27,8 +27,8 @@ from restitution.surfaces.surface import Array
 
 _STRONGEST = 3.0, 40.0  # largest |skewness| and kurtosis of the noise in `filtered`
 _CLOSE = 0.02  # tolerance on skewness (absolute) and kurtosis (relative) in `filtered`
-_CORRECTIONS = 12  # largest number of corrections of the moments of the noise in `filtered`
-_ADJUSTMENTS = 60  # largest number of adjustments of heights and amplitudes in `adjusted`
+_CORRECTIONS = 12  # `filtered` corrects the moments of the noise at most this many times
+_ADJUSTMENTS = 60  # `adjusted` adjusts heights and amplitudes at most this many times
 _NEGLIGIBLE = 1e-3  # misfit of amplitudes below which the adjustment ends
 _STANDSTILL = 0.05  # the adjustment ends if the misfit decreases by less than this fraction
 
@@ -56,8 +56,8 @@ def filtered(noise: Array, H: Array, skewness: float, kurtosis: float) -> Array 
         skew, kurt = moments(z)
         if abs(skew - skewness) < _CLOSE and abs(kurt - kurtosis) < _CLOSE * kurtosis:
             return z
-        # Skewness and kurtosis of one realisation differ from their expected values. So the values
-        # requested for the noise are corrected by the difference.
+        # The skewness and kurtosis of these heights miss the given values by chance. Correct the
+        # skewness and kurtosis that are requested for the noise accordingly.
         asked = (
             asked[0] + (skewness - skew) / skewing if skewing else 0.0,
             asked[1] + (kurtosis - kurt) / peaking,

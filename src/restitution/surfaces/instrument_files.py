@@ -77,7 +77,7 @@ def _check_archive(path: Path) -> None:
         with zipfile.ZipFile(path) as archive:
             size = sum(each.file_size for each in archive.infolist())
     except (zipfile.BadZipFile, ValueError, NotImplementedError):
-        return  # the reader reports the error
+        return  # a damaged archive; the reader of its format raises the error
     if size > _LARGEST_UNPACKED:
         raise SurfaceError(
             f"{path}: unpacks to {size} bytes, more than the {_LARGEST_UNPACKED} bytes that a scan "
@@ -131,7 +131,7 @@ def _read_channel(path: Path, reader: Any, channel: int | None) -> Scan:
     x, y = (in_metres(float(side), topography.unit) for side in topography.physical_sizes)
     heights = topography.to_unit("m").heights()
     return Scan(
-        # Undefined pixels are masked; NumPy's default fill value would look like a height.
+        # Fill masked (undefined) pixels with NaN. NumPy's default value would look like a height.
         np.ma.filled(np.ma.asarray(heights, dtype=np.float64), np.nan),
         (x, y) if sized else (None, None),
         {

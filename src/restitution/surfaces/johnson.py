@@ -102,7 +102,7 @@ def _fitted(
 
     def miss(shape: Array) -> Array:
         _, _, skew, kurt = _moments(form, shape)
-        # The logarithm limits the weight of the kurtosis, which is very large for long tails.
+        # Long tails have a very large kurtosis. The logarithm limits its weight in the fit.
         return np.array([skew - skewness, math.log(kurt / kurtosis)])
 
     with np.errstate(over="ignore", invalid="ignore"):

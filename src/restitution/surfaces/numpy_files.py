@@ -42,7 +42,7 @@ def read_numpy(path: Path) -> Scan:
 def _load_arrays(
     path: Path,
 ) -> tuple[NDArray[np.generic], tuple[float | None, float | None], dict[str, str | float]]:
-    # Unpickling could run code from the file, so it is forbidden for both formats.
+    # Unpickling could run code from the file, so it is forbidden for .npy and .npz.
     try:
         _check_headers(path)
         if path.suffix.lower() == ".npy":

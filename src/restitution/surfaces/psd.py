@@ -77,8 +77,8 @@ def radial_spectrum(surface: Surface, density: Array | None = None) -> RadialSpe
     least, most = 2 * math.pi / min(surface.grid.size), math.pi / max(surface.grid.spacing)
     count = max(1, round(_BANDS_PER_OCTAVE * math.log2(max(most / least, 1.0))))
     edges = np.geomspace(0.999 * least, 1.001 * most, count + 1)
-    # Band 0 contains the waves below the lowest band and the waves whose density is NaN. Band 0 and
-    # the waves above the highest band are left out.
+    # Index 0 marks waves that are too long for the lowest band, and waves whose density is NaN.
+    # These waves are left out, as are waves that are too short for the highest band.
     band = np.where(np.isfinite(C), np.digitize(q, edges), 0).ravel()
     size = np.bincount(band, minlength=count + 2)[1:-1]
     sums = (np.bincount(band, values.ravel(), count + 2)[1:-1] for values in (q, C))

@@ -77,7 +77,8 @@ def _at_nodes(height: Array, nodes: int, *, periodic: bool) -> Array:
     from scipy.fft import irfft, rfft
 
     n = height.shape[0]
-    first = n // 2 - (nodes // 2) * n / nodes  # position of the first new node, in old cells
+    # Distance from the first old node to the first new node, in old cells.
+    first = n // 2 - (nodes // 2) * n / nodes
     values = height if periodic else np.concatenate([height, height[::-1]])
     period = values.shape[0]
     new_period = nodes * period // n

@@ -81,15 +81,15 @@ def carried(surface: Surface, spacing: tuple[float, float], *, mirrored: bool = 
 def left_out(surface: Surface, kept: Array, spacing: tuple[float, float]) -> dict[str, float]:
     """Provenance entries that describe the waves removed by resampling to cells of `spacing` (m).
 
-    `kept` are the heights of `surface` without these waves. The entries also include the waves
-    removed by earlier resampling:
+    `kept` are the heights of `surface` without these waves. The entries also take into account the
+    waves removed by earlier resampling:
 
     - `removed_rms_m`: rms height of the removed waves
     - `removed_slope`: rms slope of the removed waves divided by the rms slope of the original
       surface
     - `shortest_carried_m`: wavelength of the shortest remaining wave
-    - `pixel_x_m`, `pixel_y_m`: pixel size of `surface`, or the pixel size before an earlier
-      resampling if the earlier pixels were larger
+    - `pixel_x_m`, `pixel_y_m`: pixel size. If `surface` was resampled before from larger pixels,
+      it is the size of these larger pixels.
     """
     before = surface.provenance
     pixel = [

@@ -67,7 +67,7 @@ class Autocorrelated:
         _check_shortest(self.shortest, grid)
 
     def amplitude(self, grid: Grid) -> Array:
-        """Factors for the `rfft2` modes of white noise on `grid`, up to a common factor."""
+        """Factors for the `rfft2` modes of white noise on `grid`; only their ratios matter."""
         from scipy.fft import rfft2
 
         x, y = (
@@ -135,7 +135,7 @@ class SelfAffine:
             )
 
     def amplitude(self, grid: Grid) -> Array:
-        """Factors for the `rfft2` modes of white noise on `grid`, up to a common factor."""
+        """Factors for the `rfft2` modes of white noise on `grid`; only their ratios matter."""
         q = _wave_numbers(grid)
         q_r = 2 * math.pi / (max(grid.size) if self.rolloff is None else self.rolloff)
         H: Array = np.maximum(q / q_r, 1.0) ** -(self.hurst + 1.0)

@@ -20,10 +20,10 @@ from restitution.surfaces.scan import Y_DOWN, Scan, in_metres
 TEXT_SUFFIXES = frozenset({".txt", ".csv", ".dat", ".asc"})
 
 _LEAST_VALUES = 4  # smallest number of values of a scan line; shorter lines may be coordinates
-_LONGEST = 200  # largest length (characters) of a header value that may be a number with a unit
+_LONGEST = 200  # longer header values (in characters) are not read as a number with a unit
 _NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?"
 _QUANTITY = re.compile(rf"(?P<number>{_NUMBER})\s*(?P<unit>\S+)")
-# Keys with which headers of other programs (SPIP, Nova, Gwyddion's XYZ) set units and scales.
+# Header keys that set units or scales in files of other programs (SPIP, Nova, Gwyddion's XYZ).
 _FOREIGN_KEY = re.compile(r"unit|length|pixel|bit2|file format|factor", re.IGNORECASE)
 # Keys for the number of values per line (x) and for the number of lines (y).
 _COLUMNS = frozenset({"nx", "columns", "values per line"})
@@ -86,10 +86,10 @@ def _decode(path: Path) -> str:
 def _parse_rows(path: Path, data: list[tuple[int, str]], *, plain: bool) -> list[list[float]]:
     """Parse all lines. Raise `SurfaceError` for damaged lines.
 
-    Text after the first scan line counts as damage, because other readers would silently skip it.
-    Text above the scan lines counts as damage if the comments show that the file is a matrix
-    (`plain`) or if the text is nearly a scan line (`_is_nearly_a_row`). Other text above the scan
-    lines raises `NotAMatrixError`.
+    A line of text after the first scan line is damage, because other readers would silently skip
+    it. Above the first scan line, a line of text is damage in two cases: the comments show that the
+    file is a matrix (`plain`), or at least half of a scan line can be read in it. Any other text
+    above the first scan line raises `NotAMatrixError`.
     """
     rows: list[list[float]] = []  # a line of text becomes an empty row
     first: NotAMatrixError | None = None
@@ -156,8 +156,8 @@ def _read_header(
 ) -> tuple[tuple[float | None, float | None], float, dict[str, str | float], _Counts]:
     """Read the header lines.
 
-    Returns the edge lengths (m), the unit of the heights in metres, details for the provenance, and
-    the stated numbers of values per line and of lines.
+    Returns the edge lengths (m), the factor that converts heights to metres, and details for the
+    provenance. Also returns the number of values per line and the number of lines, if stated.
     """
     sides: dict[str, float] = {}
     metres_per_value = 1.0

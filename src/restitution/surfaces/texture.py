@@ -29,14 +29,14 @@ class Autocorrelation(NamedTuple):
 
 
 class MaterialRatio(NamedTuple):
-    """Abbott curve: rising material ratios from 0 to 1, and falling heights (m) above the mean."""
+    """Abbott curve: material ratios from 0 to 1, and their heights (m, from the mean height)."""
 
     ratio: Array
     height: Array
 
 
 class HeightDensity(NamedTuple):
-    """Heights (m) above the mean and their probability density (1/m).
+    """Heights (m), measured from their mean, and their probability density (1/m).
 
     `normal` is the density (1/m) of a normal distribution with the same Sq.
     """
@@ -77,9 +77,9 @@ def texture(surface: Surface) -> dict[str, float | None]:
 
 
 def height_density(surface: Surface) -> HeightDensity:
-    """Probability density of the heights above their mean, and of a normal distribution.
+    """Probability density of the heights, and of a normal distribution with the same Sq.
 
-    The normal distribution has the same Sq. Its density is set to 0 for a flat surface.
+    Heights are measured from their mean. The normal density is set to 0 for a flat surface.
     """
     z = surface.height - surface.height.mean()
     density, edges = np.histogram(1e9 * z, bins=_BINS, density=True)
@@ -113,7 +113,7 @@ def autocorrelation(surface: Surface) -> Autocorrelation:
 
 
 def material_ratio(surface: Surface, points: int = 1001) -> MaterialRatio:
-    """Abbott curve at `points` points: the fraction of the surface above each height."""
+    """Abbott curve with `points` points: the fraction of the surface above each height."""
     ratio = np.linspace(0.0, 1.0, points)
     z = surface.height - surface.height.mean()
     return MaterialRatio(ratio, np.quantile(z, 1 - ratio))

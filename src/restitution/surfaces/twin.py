@@ -9,9 +9,9 @@ with half the spacing gives the same surface with shorter waves added.
 To make the result independent of the grid, the waves are divided into bands by their wavelength.
 The adjustment proceeds from long to short waves:
 
-* All waves of the first band are adjusted together, on the coarsest grid that resolves them. The
-  target is the distribution of heights of the scan without the shorter waves. The last step adjusts
-  the amplitudes, so the amplitudes are exact.
+* All waves of the first band are adjusted together, on the coarsest grid that resolves them. For
+  the target distribution of heights, the shorter waves are removed from the scan. The last step
+  adjusts the amplitudes, so the amplitudes are exact.
 * Each further band adds waves down to half the shortest wavelength so far. Only the phases of the
   added waves are adjusted.
 * The bands end where the remaining waves have about 1 % of the scan's mean square height. These
@@ -36,23 +36,23 @@ from restitution.surfaces.surface import Array, Surface
 from restitution.surfaces.wave_spectrum import Modes, WaveSpectrum, spectrum_of
 
 LEAST_PIXELS = 16  # smallest number of pixels of a scan along each axis
-_UNADJUSTED = 0.01  # fraction of the scan's mean square height in waves that are not adjusted
-_FIRST_BAND = 2**20  # largest number of nodes of the grid on which the longest waves are adjusted
-_LEAST_FIRST = 8  # smallest number of cells along a scan edge, on the grid for the longest waves
+_UNADJUSTED = 0.01  # the shortest waves, with this share of mean square height, are not adjusted
+_FIRST_BAND = 2**20  # largest number of nodes of the grid for the first band (the longest waves)
+_LEAST_FIRST = 8  # smallest number of cells of the first band along an edge of the scan
 
-# Largest number of adjustments of a band: _WORK divided by the number of nodes of the band's grid,
-# but at least the first and at most the second value of _ADJUSTMENTS.
+# A band is adjusted at most _WORK/n times, where n is the number of nodes of its grid. If _WORK/n
+# is outside the range _ADJUSTMENTS, the nearest limit of this range applies instead.
 _WORK = 2**24
 _ADJUSTMENTS = 3, 60
 
 _NEGLIGIBLE = 1e-3  # misfit of heights at which the adjustment ends
 _STANDSTILL = 0.05  # the adjustment ends if the misfit decreases by less than this fraction
 
-# Largest number of parts of the twin whose spectra are averaged and compared with the spectrum of
-# the scan. Each part has the size of the scan. A twin smaller than the scan is compared as a whole.
+# To compare spectra, the twin is divided into parts of the size of the scan. The mean spectrum of
+# at most this many parts is used. A twin smaller than the scan is compared as a whole.
 _PARTS = 16
 _COMPARED = 2**23  # largest total number of nodes of these parts; a single part may have more
-_UNLIKE = 0.5  # misfit of the spectrum above which the notice contains a warning
+_UNLIKE = 0.5  # above this misfit of the spectrum, the `notice` in the provenance has a warning
 
 # Probabilities of the quantiles that represent a distribution of heights, denser in the tails.
 _PROBABILITIES = 0.5 * (1 - np.cos(np.linspace(0, np.pi, 4097)))
@@ -60,7 +60,7 @@ _TABLE = 2**14  # number of steps of the table that maps heights (see `_with_hei
 
 
 def twin(scan: Surface, grid: Grid, seed: int) -> Surface:
-    """Make a twin of `scan` on `grid`.
+    """Make a twin of `scan` on `grid`: a random surface with the statistics of the scan.
 
     The twin is periodic over `grid` or, if the scan is larger, over a multiple of `grid`. The sum
     of all its waves has the Rq of the scan, and nearly the skewness and kurtosis of the scan. From
@@ -68,10 +68,10 @@ def twin(scan: Surface, grid: Grid, seed: int) -> Surface:
 
     The provenance describes the waves left out (`removed_…`) and contains the statistics of the
     scan (`scan_…`). It also contains `spectrum_misfit`, the root mean square of the relative
-    difference between the spectra of twin and scan. The spectra are compared on parts of the
-    twin, in bands of a quarter octave. Each part has the size of the scan. A twin
-    smaller than the scan is compared as a whole. The weight of a band is the sum of two fractions:
-    its share of the mean square height and its share of the mean square slope.
+    difference between the spectra of twin and scan, in bands of a quarter octave. The spectrum of
+    the twin is the mean over parts of the size of the scan. A twin smaller than the scan is
+    compared as a whole. The weight of a band is the sum of two fractions: its share of the mean
+    square height and its share of the mean square slope.
 
     Raises `SurfaceError` for a scan that is flat or has fewer than 16 pixels along an axis, and for
     cells that are too large for any wave of the scan.
@@ -127,9 +127,9 @@ def _adjusted(spectrum: WaveSpectrum, scan: Surface, grid: Grid, seed: int) -> M
 
 
 def _bands(spectrum: WaveSpectrum, scan: Surface) -> list[tuple[float, float]]:
-    """For each band, return the largest cell (x and y edges in m) that resolves its waves.
+    """For each band of wavelengths, return the largest cell that resolves its waves.
 
-    The band of the longest waves comes first.
+    A cell is given by its x and y edges (m). The band of the longest waves comes first.
     """
     most = (1 - _UNADJUSTED) * float(np.var(scan.height))
 
@@ -157,8 +157,8 @@ def _band(
 ) -> tuple[Modes, tuple[int, int]]:
     """Adjust the phases of the waves that cells of size `cell` (m) resolve.
 
-    The waves `known`, with numbers of periods up to `kept` along the two axes, do not change.
-    Return all waves and their largest numbers of periods.
+    The waves `known` were adjusted before and do not change. `kept` contains the largest numbers of
+    their periods along x and y. Return all waves and their largest numbers of periods.
     """
     from scipy.fft import irfft2, rfft2
 
@@ -186,7 +186,7 @@ def _band(
 
 
 def _with_heights(z: Array, heights: Array) -> Array:
-    """Map `z` monotonically to the distribution of the sorted `heights`."""
+    """Give `z` the distribution of the sorted `heights`, without changing its rank order."""
     have = np.sort(z, axis=None)
     low, high = float(have[0]), float(have[-1])
     if not low < high:
@@ -209,7 +209,7 @@ def _between(table: Array, at: Array) -> Array:
 
 
 def _nodes(most: tuple[int, int]) -> tuple[int, int]:
-    """Return the smallest grid that resolves `most` periods per axis and has a fast FFT."""
+    """Return the smallest grid with a fast FFT that resolves `most` periods along x and y."""
     from scipy.fft import next_fast_len
 
     return (
@@ -227,7 +227,7 @@ def _copy(source: Modes, target: Modes, most: tuple[int, int]) -> None:
 
 
 def _heights(modes: Modes, nodes: tuple[int, int]) -> Array:
-    """Sum the waves, whose phases are relative to the origin of `Grid` (node n // 2)."""
+    """Sum the waves. Their phases are relative to the origin of a `Grid` (node n // 2)."""
     from scipy.fft import irfft2
 
     number = np.fft.fftfreq(nodes[0], 1 / nodes[0]), np.arange(modes.shape[1])
@@ -281,9 +281,10 @@ def _provenance(
 
 
 def _misfit(made: Surface, scan: Surface) -> float:
-    """Relative difference between the radial spectra of parts of `made` and of `scan`.
+    """Relative rms difference between the radial spectra of the twin `made` and of `scan`.
 
-    Only waves that both grids resolve are compared.
+    The spectrum of the twin is the mean over parts of the size of the scan. Only waves that both
+    grids resolve are compared.
     """
     grid, pixel = made.grid, scan.grid.spacing
     nx, ny = (
@@ -306,8 +307,8 @@ def _misfit(made: Surface, scan: Surface) -> float:
     q, C = of_scan.wave_number[both], of_scan.density[both]
     if not q.size or not C.max() > 0:
         return 0.0
-    # The weight of a band is the sum of its fractions of the mean squares of height and slope,
-    # which are proportional to ∫ C q² d(ln q) and ∫ C q⁴ d(ln q).
+    # The weight of a band is its share of the mean square height plus its share of the mean square
+    # slope. These mean squares are proportional to ∫ C q² d(ln q) and ∫ C q⁴ d(ln q).
     share = sum(power / power.sum() for power in (C * q**k for k in (2, 4)))
     off = (of_twin.density[both] / np.maximum(C, 1e-12 * C.max()) - 1) ** 2
     return float(np.sqrt(np.average(off, weights=share)))

@@ -1,4 +1,6 @@
-"""Amplitudes of the waves of a statistical twin, from the spectrum of a scan of another size.
+"""Wave amplitudes of a twin, which is a random surface with the statistics of a scan.
+
+The twin can be larger than the scan. Its amplitudes are computed in two steps:
 
 1. The scan's power spectrum C (`psd`) is interpolated linearly to the wave vectors of the twin.
    Waves longer than the scan have not been measured and are left out.
@@ -26,8 +28,8 @@ from restitution.surfaces.surface import Array, Surface
 
 Modes = NDArray[np.complex128]
 
-_SUMMED = 2**20  # approximate largest number of waves that `_moments` sums one by one
-_LEAST = 2  # waves with at most this many periods per scan are always summed one by one
+_SUMMED = 2**20  # `_moments` sums at most about this many waves one by one
+_LEAST = 2  # waves with at most this many periods per scan edge are always summed one by one
 _ROWS = 2**20  # number of waves computed at a time, to limit the memory
 _ROUNDING = 1e-9
 
@@ -37,8 +39,8 @@ class WaveSpectrum:
     """Mean square heights of the waves (m, n) of a surface with edges `period` (m).
 
     Wave (m, n) has the wave vector 2π(m/Px, n/Py), where (Px, Py) is the `period`. `density` is the
-    spectrum of the scan, as mean square height (m²) per wave of the twin. The zero wave vector is
-    in the middle of the array.
+    spectrum of the scan, scaled to the mean square height (m²) of one wave of the twin. The zero
+    wave vector is in the middle of the array.
     """
 
     density: Array
@@ -54,7 +56,10 @@ class WaveSpectrum:
         return np.maximum(C * (self.flat + self.steep / np.maximum(k2, 1.0)), 0.0)
 
     def _raw(self, m: NDArray[np.int64], n: NDArray[np.int64]) -> tuple[Array, Array]:
-        """Interpolated density without the factor a + b/k², and k² (k: scan size/wavelength)."""
+        """Interpolate `density` at the waves (m, n), without the factor a + b/k².
+
+        Also return k², where k is the size of the scan divided by the wavelength.
+        """
         from scipy.ndimage import map_coordinates
 
         kx, ky = m / self.waves[0], n / self.waves[1]
@@ -74,10 +79,10 @@ class WaveSpectrum:
         return most[0], most[1]
 
     def modes(self, most: tuple[int, int], nodes: tuple[int, int], seed: int) -> Modes:
-        """Waves (m, n) up to `most` with random phases, in the order of `rfft2`.
+        """Waves (m, n) with random phases, in the order of `rfft2`.
 
-        `nodes` is the shape of the grid of the FFT. The normalisation is "forward": heights are the
-        sum of the modes.
+        `most` contains the largest |m| and n. `nodes` is the shape of the grid of the FFT. The
+        normalisation is "forward": heights are the sum of the modes.
         """
         M, N = most
         full: Modes = np.zeros((nodes[0], nodes[1] // 2 + 1), dtype=np.complex128)
@@ -91,7 +96,7 @@ class WaveSpectrum:
 
 
 def spectrum_of(scan: Surface, period: tuple[float, float]) -> WaveSpectrum:
-    """Mean square heights of the waves of a twin of `scan`; `period` (m) are the twin's edges."""
+    """Compute the spectrum of a twin of `scan`; `period` contains the edges (m) of the twin."""
     C = np.fft.fftshift(power_spectral_density(scan))
     waves = tuple(p / s for p, s in zip(period, scan.grid.size, strict=True))
     C *= 1 / (scan.grid.size[0] * scan.grid.size[1] * waves[0] * waves[1])
@@ -109,15 +114,16 @@ def spectrum_of(scan: Surface, period: tuple[float, float]) -> WaveSpectrum:
 
 
 def _moments(spectrum: WaveSpectrum) -> Array:
-    """Return the mean square height (row 1) and the mean square slope (row 2), shape (2, 2).
+    """Mean square height (row 1) and mean square slope (row 2) of two surfaces, shape (2, 2).
 
-    The waves have the mean square heights P in column 1 and P/k² in column 2. P is C (a + b/k²), or
-    0 where this product is negative (see `WaveSpectrum.power`), and k is the size of the scan
-    divided by the wavelength. The coefficients a and b are the fields `flat` and `steep` of
-    `spectrum`. Slopes are differences between neighbouring pixels, as in `rms_slope`. Long waves
-    are summed one by one, over the wave vectors of the twin. Short waves are summed over the wave
-    vectors of the scan. The scan has fewer wave vectors than the twin, because the scan is not
-    larger than the period of the twin.
+    The waves of the first surface (column 1) have the mean square heights P of
+    `WaveSpectrum.power`. The waves of the second surface (column 2) have the mean square heights
+    P/k², where k is the size of the scan divided by the wavelength. Slopes are differences between
+    neighbouring pixels, as in `rms_slope`.
+
+    Long waves are summed one by one, over the wave vectors of the twin. Short waves are summed over
+    the wave vectors of the scan, which are fewer: the scan is not larger than the period of the
+    twin.
     """
     wx, wy = spectrum.waves
     (mx, my), (hx, hy) = spectrum.density.shape, spectrum.pixel

@@ -71,7 +71,7 @@ def local_workers(count: int | None) -> Iterator[Workers]:
             return pools.enter_context(_Pool(size, mp_context=context, initializer=_serve))
 
         def heard() -> list[tuple[int, int]]:
-            # Only this process takes messages, so the queue holds at least `qsize()` messages.
+            # No other process takes messages, so at least `qsize()` messages can be taken.
             return [queue.get_nowait() for _ in range(queue.qsize())]
 
         yield Workers(begin(places), places, threads, queue, heard, begin)
@@ -99,8 +99,8 @@ class _Pool(ProcessPoolExecutor):
 def _without_interrupts() -> Iterator[None]:
     """Block SIGINT in processes that start in the `with` body.
 
-    Ctrl-C sends SIGINT to all processes of a terminal. A new process ignores it only after `_serve`
-    has run there. Before that, an unblocked SIGINT would end the new process with a traceback.
+    Ctrl-C sends SIGINT to all processes of a terminal. A new process ignores SIGINT as soon as it
+    has called `_serve`. Before that, an unblocked SIGINT would end it with a traceback.
     """
     if not hasattr(signal, "pthread_sigmask"):  # Windows lacks this function
         yield
@@ -109,9 +109,9 @@ def _without_interrupts() -> Iterator[None]:
 
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGHUP})
     try:
-        # The first new process would start the resource tracker, and thereby unblock SIGINT.
-        # Therefore, start the tracker now. SIGHUP is blocked in the tracker, because the tracker
-        # must outlive this process when the terminal closes.
+        # Starting the resource tracker unblocks SIGINT. Therefore, start it now, and not together
+        # with the first new process. The tracker starts with SIGHUP blocked, because it must
+        # outlive this process when the terminal closes.
         resource_tracker.ensure_running()
         signal.pthread_sigmask(signal.SIG_SETMASK, before | {signal.SIGINT})
         yield

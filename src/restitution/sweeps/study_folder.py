@@ -37,11 +37,12 @@ FAILED, STUDY_FILE = "failed.json", "study.toml"
 
 
 def prepare_folder(path: Path, name: str, text: str, *, resume: bool, what: str) -> None:
-    """Prepare the folder `path` for a study or mixture, whose file `name` holds `text`.
+    """Prepare the folder `path` for a study or a mixture.
 
-    `what` is the word "study" or "mixture", for messages. Without `resume` the folder must be new
-    or empty, and the file is written. With `resume` the folder must hold a study or mixture with
-    the same `text`. Raises `OutputError` otherwise, or if the folder cannot be written.
+    `what` is the word "study" or "mixture", for messages. `text` is the content of its file, whose
+    name in the folder is `name`. Without `resume`, the folder must be new or empty, and the file is
+    written. With `resume`, the folder must already hold a file `name` with the same `text`. Raises
+    `OutputError` otherwise, or if the folder cannot be written.
     """
     held = path / name
     if not resume:

@@ -18,9 +18,9 @@ These conventions hold for every law:
 - **Shapes**: every argument and field may be a number or an array. They broadcast, and the result
   has the broadcast shape (a NumPy scalar if all are numbers).
 - **Separated spheres**: if the indentation, force or velocity is zero or negative, every force,
-  pressure, length, area and energy is 0, and the restitution is 1. Adhesive contacts also exist at
-  negative indentation, down to the point where they break. Spheres that stick have restitution 0.
-  NaN arguments give NaN.
+  pressure, length, area and energy is 0, and the restitution is 1. Adhesive contacts are an
+  exception: they also exist at negative indentation, down to the point where they break. Spheres
+  that stick have restitution 0. NaN arguments give NaN.
 - **Out of range**: where a formula has no solution, the result is NaN. The docstring of the method
   names these cases.
 - **Invalid parameters**: a radius, modulus, pressure, strength or mass that is not positive and

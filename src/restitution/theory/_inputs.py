@@ -33,7 +33,7 @@ def positive(**quantities: Values) -> tuple[Array, ...]:
 
 
 def keep_positive(law: object, *names: str) -> None:
-    """Check the named fields of a frozen `law` with `positive`; store them as read-only arrays."""
+    """Check that the named fields of a frozen `law` are positive; store them read-only."""
     for name in names:
         keep(law, name, *positive(**{name: getattr(law, name)}))
 

@@ -15,9 +15,9 @@ depends on v alone:
     series   e = 1 − 1.153449 v² + 0.798267 v⁴ + 0.266666 v⁵ − …
     Padé     e = (1 + 0.501086 v)/(1 + 0.501086 v + 1.15345 v² + 0.577977 v³ + 0.532178 v⁴)
 
-Compared with a numerical solution of the equation of motion, the Padé approximant of e is wrong by
-at most 10⁻⁵ up to v = 0.2 (e ≥ 0.95), 10⁻³ up to v = 0.6 (e ≥ 0.68) and 0.009 for any v. If
-e < 0.2, an error of 0.009 is more than 4.5 % of e.
+The Padé approximant of e was compared with a numerical solution of the equation of motion. Its
+error is at most 10⁻⁵ up to v = 0.2 (e ≥ 0.95), 10⁻³ up to v = 0.6 (e ≥ 0.68) and 0.009 for any v.
+If e < 0.2, an error of 0.009 is more than 4.5 % of e.
 
 Valid for smooth spheres with contact radius a ≪ R*, without yield or adhesion, if the relaxation
 time of the material is shorter than the impact. The contact ends when the force returns to zero, at

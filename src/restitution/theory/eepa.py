@@ -19,7 +19,7 @@ The contact begins and ends at δ = 0, where the force jumps between f₀ and ze
 e² = [1 − (n + 1)q + n q^{1+1/n}] k₂/k₁ with q = 1 − k₁/k₂. For n = 1, e² = k₁/k₂.
 
 Here k_adh is a constant. Some codes (EDEM, PFC, LIGGGHTS by default) derive k_adh from a surface
-energy, so that k_adh depends on δ_p. The exponent of their adhesive branch (Morrissey's χ) may
+energy, so that k_adh depends on δ_p. The exponent of their adhesive branch (Morrissey's χ) can
 differ from n. The dashpot of the model is left out. The stiffnesses are parameters to be fitted;
 the law does not use R* and E*.
 Units, shapes and errors are those of `restitution.theory`, with stiffness in N/mⁿ.

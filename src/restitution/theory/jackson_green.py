@@ -15,11 +15,11 @@ peak pressure is CY; ω_c is `FirstYield.indentation` with p_y = CY.
 
 The fit covers only loading against a rigid frictionless flat. Its data are finite-element results
 for five steel-like materials (Y/E* from 0.001 to 0.007, ν = 0.32; von Mises, no hardening) up to
-a/R* = 0.412. The force deviates from these results by 1 % on average and by at most 3.5 %, the area
-by 1.3 % on average and by at most 4.3 %. Outside these ranges the fit extrapolates. At ω* = 1.9 the
-forces of the two branches agree within 0.1 % for ν = 0.32. For other values of ν the force jumps at
-ω* = 1.9: by +7.5 % for ν = 0, +1.5 % for ν = 0.25 and −3.4 % for ν = 0.5. For two deformable bodies
-use Y and ν of the body with the smaller CY.
+a/R* = 0.412. The force deviates from these results by 1 % on average and by at most 3.5 %. The area
+deviates by 1.3 % on average and by at most 4.3 %. Outside these ranges the fit extrapolates. At
+ω* = 1.9 the forces of the two branches agree within 0.1 % for ν = 0.32. For other values of ν the
+force jumps at ω* = 1.9: by +7.5 % for ν = 0, +1.5 % for ν = 0.25 and −3.4 % for ν = 0.5. For two
+deformable bodies use Y and ν of the body with the smaller CY.
 Units, shapes and errors are those of `restitution.theory`.
 """
 

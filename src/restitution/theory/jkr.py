@@ -26,7 +26,7 @@ At fixed grips the branch s ≥ 1 is stable and the branch s < 1 unstable. Metho
 `contact_radius` cover both branches; methods with the argument `indentation` cover the stable
 branch. The stable branch exists for δ ≥ δ_b. Approaching spheres jump onto this branch at δ = 0
 (F = 0 before the jump), and separating spheres leave it at δ_b; below δ_b all quantities are 0. The
-jump into contact and the break together dissipate the same energy for any largest indentation:
+jump into contact and the break together dissipate the energy W_s, whatever the largest indentation:
 
     W_s = −∫ F dδ from δ_b to 0 = U_T(δ_b) − U_T(0) = 8/5 (2 + 3·4^{4/3}) U
         = 7.092 (w⁵R*⁴/E*²)^{1/3},
@@ -41,9 +41,9 @@ the sticking velocity V_s:
 (Thornton & Ning print 14.18; the exact value 2 × 7.092 = 14.184 is used here).
 
 Valid for quasi-static normal impacts in the range of Hertz (a ≪ R*, no yield: V and V_s below
-`FirstYield.velocity`) and for surface forces of short range. The range z₀ is short if the Tabor
-parameter μ, the ratio of the height of the JKR neck to z₀, is large (D. Tabor, J. Colloid Interface
-Sci. 58 (1977) 2–13):
+`FirstYield.velocity`) and for surface forces of short range. The Tabor parameter μ is the height of
+the JKR neck divided by the range z₀, so μ is large if the range is short (D. Tabor, J. Colloid
+Interface Sci. 58 (1977) 2–13):
 
     μ = (R*w²/(E*²z₀³))^{1/3}
 
@@ -68,9 +68,8 @@ from ._inputs import Array, PositiveFields, Values, positive, scalar_or_array, t
 from .hertz import Hertz
 from .kendall import Kendall
 
-# Total energy, in units of U, at two points of a path at prescribed indentation: where the contact
-# breaks (s = 1), and right after it has formed by a jump (s³ = 4). The module docstring defines U
-# and s.
+# Total energy in units of U: where the contact breaks at prescribed indentation (s = 1), and right
+# after the jump into contact (s³ = 4). The module docstring defines U and s.
 _AT_BREAK = 16 / 5
 _AT_JUMP_IN = -24 / 5 * 4 * math.cbrt(4)
 
@@ -152,8 +151,9 @@ class JKR(PositiveFields):
     def stored_energy_at_contact_radius(self, contact_radius: Values) -> Array:
         """Elastic energy at a contact radius, on the stable and the unstable branch.
 
-        Hertz loading to the contact radius a, followed by unloading by δ′ = (2πwa/E*)^½ at fixed a
-        (stiffness 2E*a), gives U_el = 8E*a⁵/(15R*²) − 4E*a³δ′/(3R*) + E*aδ′².
+        The energy is that of two steps: Hertz loading to the contact radius a, then unloading by
+        δ′ = (2πwa/E*)^½ at fixed a with the stiffness 2E*a. The sum is
+        U_el = 8E*a⁵/(15R*²) − 4E*a³δ′/(3R*) + E*aδ′².
 
         Args:
             contact_radius: Contact radius a (m).
@@ -353,11 +353,11 @@ class JKR(PositiveFields):
     def _root(self, indentation: Values) -> Array:
         """Square root s = (a/a_b)^½ of the relative contact radius on the stable branch.
 
-        s is 0 below the break. a_b and δ_b are the radius and the indentation at which the contact
-        breaks. s ≥ 1 is the larger solution of s⁴ − 4s = 3k with k = δ/|δ_b| ≥ −1. Ferrari's method
-        gives s = p + (1/p − p²)^½, where y = 2p² is the positive root of the cubic y³ + 3ky = 2.
-        Cardano's formula for this root, y = t − k/t with t³ = 1 + (1 + k³)^½, is evaluated as
-        y = 2/(t² + k + k²/t²), which has no cancellation at any depth.
+        The contact breaks at the radius a_b and the indentation δ_b; below δ_b the result is 0.
+        Above, s ≥ 1 is the larger solution of s⁴ − 4s = 3k with k = δ/|δ_b|. Ferrari's method gives
+        s = p + (1/p − p²)^½. Here y = 2p² is the positive root of y³ + 3ky = 2. Cardano's formula
+        gives y = t − k/t with t³ = 1 + (1 + k³)^½. The code uses the equivalent form
+        y = 2/(t² + k + k²/t²), which avoids cancellation.
         """
         d, d_b = np.asarray(indentation, dtype=np.float64), self.break_indentation
         above = np.maximum((d - d_b) / -d_b, 0.0)  # 1 + k, exactly 0 at the break

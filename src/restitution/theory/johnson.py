@@ -1,8 +1,8 @@
 """Johnson (1985): fully plastic impact of a sphere, elastic rebound, no adhesion.
 
 K. L. Johnson, Contact Mechanics (Cambridge, 1985), section 11.5. The contact of radius a flows at a
-constant pressure p_d, and its indentation is δ = a²/2R*. W is the work of loading to the force F.
-The rebound is that of a Hertz contact with the flattened surface and returns the work W_u:
+constant pressure p_d, and its indentation is δ = a²/2R*. W is the loading work and F the largest
+force. The rebound is that of a Hertz contact with the flattened surface and returns the work W_u:
 
     ½ m* V² = W = πp_da⁴/4R*,   W_u = 3F²/10E*a,  F = πa²p_d
     e² = W_u/W = (3π^{5/4} 4^{3/4}/10) (p_d/E*) (W/p_dR*³)^{−1/4}
@@ -114,6 +114,6 @@ class Johnson(PositiveFields):
         return (COEFFICIENT**2 * self.yield_strength / self.contact_modulus) ** 4
 
     def _velocity(self, reduced: Values, mass: Values) -> Array:
-        """Impact velocity V (m/s) at which the impact energy divided by YR*³ is `reduced`."""
+        """Impact velocity V (m/s) of an impact with the energy `reduced` · YR*³."""
         (m,) = positive(mass=mass)
         return scalar_or_array(np.sqrt(2 * reduced * self.yield_strength * self.radius**3 / m))

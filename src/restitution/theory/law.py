@@ -29,7 +29,7 @@ class ImpactLaw(Protocol):
 
 
 def impact_energy(velocity: Values, mass: Values) -> Array:
-    """Impact energy ½ m* V² (J) of the velocity V (m/s) and the reduced mass m* (kg)."""
+    """Impact energy ½ m* V² (J), where V is the velocity (m/s) and m* the reduced mass (kg)."""
     (m,) = positive(mass=mass)
     return 0.5 * m * touching(velocity) ** 2
 

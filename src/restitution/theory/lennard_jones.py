@@ -82,12 +82,12 @@ class LennardJones(PositiveFields):
 
     @property
     def dugdale_traction(self) -> Array:
-        """Constant traction 0.548 w/z₀ (Pa) of the Dugdale law that matches this law.
+        """Constant traction 0.548 w/z₀ (Pa) of the Dugdale law that replaces the Lennard-Jones law.
 
         Both laws have the same work of adhesion w and the same integral ∫σ² dg of the squared
-        traction. With this traction, `MaugisDugdale` gives the pull-off force of the Lennard-Jones
-        law within 1.5 %. With the largest traction σ₀ the pull-off force is up to
-        5.4 % too small (docs/adhesion.md).
+        traction. With the constant traction, `MaugisDugdale` gives the pull-off force of the
+        Lennard-Jones law within 1.5 %. With `largest_traction` instead, `MaugisDugdale` gives a
+        pull-off force that is up to 5.4 % too small (docs/adhesion.md).
         """
         factor = 64 / 9 * (1 / 5 - 2 / 11 + 1 / 17)
         return scalar_or_array(factor * self.work_of_adhesion / self.equilibrium_separation)

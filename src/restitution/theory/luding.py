@@ -1,15 +1,15 @@
 """Luding (2008): linear springs, plastic up to a limit indentation, with linear adhesion.
 
 S. Luding, Granular Matter 10 (2008) 235–246, eqs. 6–8. Loading is plastic up to the limit
-indentation δ*. Beyond δ* it is elastic. This limit branch follows A. Singh, V. Magnanimo, S.
-Luding, arXiv:1503.03720. The constants are the stiffnesses k₁ (plastic loading), k̂₂ (limit branch)
+indentation δ*. Beyond δ* it is elastic, on the limit branch of A. Singh, V. Magnanimo, S. Luding,
+arXiv:1503.03720. The constants are the stiffnesses k₁ (plastic loading), k̂₂ (limit branch)
 and k_c (adhesion), and the plasticity depth φ_f. d = δ_max is the largest indentation and x = d/δ*.
 k₂ is the unloading stiffness and δ₀ the residual indentation. W_l is the loading work, W_u the work
 that the contact returns on unloading, and V the impact velocity:
 
     limit       δ* = k̂₂/(k̂₂ − k₁) φ_f 2R*,  with the residual indentation δ₀* = φ_f 2R*
     unloading   F = k₂(δ − δ₀),  k₂ = k₁ + (k̂₂ − k₁) min(x, 1),  δ₀ = min((1 − k₁/k₂) d, δ₀*)
-    loading     F = k₁δ up to δ*, then F = k̂₂(δ − δ₀*); at δ = d, F = k₂(δ − δ₀) in both cases
+    loading     F = k₁δ up to δ*, then F = k̂₂(δ − δ₀*); both end at F = k₂(d − δ₀)
     adhesion    F = −k_cδ from δ_min = k₂δ₀/(k₂ + k_c) to δ = 0
     work        W_l = ½k₂(d − δ₀)² + ½k₁ min(d, δ*) δ₀,  W_u = ½k₂(d − δ₀)² − ½ k_cδ_minδ₀
     impact      ½ m* V² = W_l, e² = W_u/W_l; if W_u ≤ 0, e = 0: the bodies stick at some δ > 0

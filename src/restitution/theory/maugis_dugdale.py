@@ -3,8 +3,8 @@
 D. Maugis, J. Colloid Interface Sci. 150 (1992) 243–269; K. L. Johnson, J. A. Greenwood, J. Colloid
 Interface Sci. 192 (1997) 326–333. The attraction σ₀ acts in the ring a < r < c around the contact
 area of radius a. In this ring the gap is below w/σ₀, where w is the work of adhesion. The
-transition parameter is λ = 2σ₀ (R*/(πwK²))^{1/3} with K = 4/3 E*. The other dimensionless
-quantities are
+transition parameter is λ = 2σ₀ (R*/(πwK²))^{1/3} with K = 4/3 E*. The dimensionless contact
+radius, force and outer radius of the ring are
 
     ā = a (K/(πwR*²))^{1/3},   F̄ = F/(πwR*),   m = c/a.
 

@@ -1,11 +1,12 @@
-"""MDR, the law of LAMMPS' `pair_style granular mdr`, for one elastic, perfectly plastic contact.
+"""MDR: LAMMPS' `pair_style granular mdr` for one contact of an elastic, perfectly plastic sphere.
 
 W. Zunker, K. Kamrin, J. Mech. Phys. Solids 183 (2024) 105492, as implemented in the source of
 LAMMPS (release 22Jul2025). The law describes one sphere on a rigid flat, here without adhesion
 (`dgamma` = 0) and without damping. δ is the indentation of the sphere, R its radius, m its mass and
 V its impact velocity. E is Young's modulus, ν Poisson's ratio and Y the yield strength of a tensile
-test. MDR is the method of dimensionality reduction: a row of independent springs, the transformed
-half-space, replaces the elastic half-space. With x = δ_max/R, E* = E/(1 − ν²) and G = E/(2 + 2ν):
+test. MDR stands for method of dimensionality reduction: the elastic half-space is replaced by a row
+of independent springs, which is called the transformed half-space. With x = δ_max/R,
+E* = E/(1 − ν²) and G = E/(2 + 2ν):
 
     pressure    p_Y = Y (1 + 1.75 exp(−4.4x)), the mean pressure of the yielded contact
     yield       at δ_Y, where Hertz's mean pressure 4E*(δ/R)^½/3π reaches p_Y
@@ -22,11 +23,13 @@ half-space, replaces the elastic half-space. With x = δ_max/R, E* = E/(1 − ν
     impact      ½ m V² = W_l, e² = W_u/W_l; the contact ends where F returns to zero
 
 The contact stays elastic up to a mean pressure of almost 2.75 Y (a peak of 4.1 Y) and is then fully
-plastic at once. LAMMPS puts a rigid flat between two spheres: if two equal spheres collide, each of
-them hits the flat with half of the relative velocity. The law cannot describe a deformable flat.
+plastic at once. Between two spheres, LAMMPS assumes a rigid flat. So if two equal spheres collide,
+each of them hits this flat with half of the relative velocity. The law cannot describe a deformable
+flat.
 
-At yield the rebound changes abruptly from Hertz to the elliptical indenter: e drops from 1 by at
-least 5 % (more for a larger Y/E*), rises a little, and then decreases with V. LAMMPS does the same.
+At yield the rebound changes abruptly from Hertz to the elliptical indenter. So e drops from 1 by at
+least 5 %, and by more for a larger Y/E*. As V grows further, e first rises a little and then
+decreases. LAMMPS shows the same behaviour.
 
 These parts of the LAMMPS implementation are left out:
 
@@ -268,8 +271,8 @@ class MDR:
         """Elastic recovery d_e + δ_R (m) on unloading from the indentation `d`.
 
         d_e is the penetration of the indenter at full load (`_elastic_depth`). δ_R is a correction
-        for the finite size of the sphere. In its formula, F_max/(2πGa²d_e) is replaced by
-        1/(2a(1 − ν)), which is equal to it.
+        for the finite size of the sphere. The code uses the identity
+        F_max/(2πGa²) = d_e/(2a(1 − ν)).
         """
         a, d_e, nu = self._contact_radius(d), self._elastic_depth(d), self.poissons_ratio
         z = self.radius - d + d_e

@@ -15,14 +15,14 @@ units of F_y δ_y:
                 R_p F = R* F_Hertz(δ_max),  R_p/R* = x^{3/2}/f
     impact      ½ m* V² = W_l, e² = W_u/W_l; the contact ends where F returns to zero.
 
-Restitution depends on x alone, or equivalently on v = V/V_y alone, because f² = (6v² − 1)/5 relates
-x to v exactly.
+The restitution e is a function of x alone. Beyond yield f² = (6v² − 1)/5 with v = V/V_y, so e is
+also a function of v alone.
 
 Valid for quasi-static, normal, frictionless impacts of smooth spheres with a ≪ R*. Up to yield the
-law is Hertz. Beyond yield, a contact whose deformation is in equilibrium with pressures of at most
-p_y carries a larger force. The difference grows with depth, because the area of a real yielded
-contact tends to 2πR*δ, whereas this law keeps the area πR*δ. p_y is a contact pressure, as in
-`FirstYield`, and not the yield strength.
+law is Hertz. Beyond yield, its force is too small, because the deformation does not follow from the
+pressure that is cut off at p_y. The error grows with depth: the area of a real yielded contact
+tends to 2πR*δ, whereas this law keeps the area πR*δ. p_y is a contact pressure, as in `FirstYield`,
+and not the yield strength.
 Units, shapes and errors are those of `restitution.theory`.
 """
 
@@ -197,8 +197,8 @@ class ThorntonNing(PositiveFields):
     def indentation_from_velocity(self, velocity: Values, mass: Values) -> Array:
         """Largest indentation of an impact; the inverse of `impact_velocity`.
 
-        With the values δ_y and V_y at first yield, δ/δ_y = (V/V_y)^{4/5} up to yield and
-        (1 + 2f)/3 beyond, where f² = (6 (V/V_y)² − 1)/5 is the square of the relative force.
+        The index y marks values at first yield. Up to first yield, δ/δ_y = (V/V_y)^{4/5}. Beyond
+        it, δ/δ_y = (1 + 2f)/3 with the relative force f = F/F_y and f² = (6 (V/V_y)² − 1)/5.
 
         Args:
             velocity: Relative normal impact velocity V (m/s).
@@ -258,8 +258,8 @@ class ThorntonNing(PositiveFields):
     def _yielded(self, maximum_indentation: Values) -> Array:
         """Indentation x = δ/δ_y relative to first yield; 1 below first yield.
 
-        At x = 1 the formulas for the flattened radius, the residual indentation and the restitution
-        give the values of a Hertz contact, which hold up to first yield.
+        With x = 1, the formulas for the flattened radius, the residual indentation and the
+        restitution give R*, 0 and 1. These values hold for any contact that has not yielded.
         """
         return np.maximum(touching(maximum_indentation) / self.first_yield.indentation, 1.0)
 

@@ -14,7 +14,7 @@ e = (1 + S V (m*/k₁)^½)^{−½}. The paper considers two equal spheres of mas
 as 1/ω₀, where ω₀ = (2k₁/m)^½.
 
 The contact ends where F returns to zero, at δ₀ > 0, not at δ = 0. There is no adhesion. The
-stiffnesses are parameters to be fitted; R* and E* do not enter.
+stiffnesses are parameters to be fitted; the law does not use R* and E*.
 Units, shapes and errors are those of `restitution.theory`.
 """
 

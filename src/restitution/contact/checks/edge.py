@@ -12,7 +12,7 @@ from restitution.contact.contact import Contact
 from restitution.contact.state import State
 from restitution.errors import DomainError
 
-_MARGIN = 1.2  # ratio of the width of the recommended grid to the largest width of the contact
+_MARGIN = 1.2  # width of the recommended grid divided by the largest width of the contact
 
 # First touch counts as off-centre if its distance from the centre exceeds this fraction of the
 # width of the grid.
@@ -106,7 +106,7 @@ def needed_edges(contact: Contact, indentation: float) -> tuple[float, float]:
     shift = float(((x * x + y * y) / (2 * R) - height).min())
     reach = math.sqrt(2 * R * (indentation + float(height.max()) + shift))
     wide, long = contact.grid.size
-    # This function is called if the contact reaches the edge of the grid or is expected to reach
-    # it. So it recommends a larger grid even if the shorter edge already exceeds twice the reach.
+    # The contact reaches the edge of the grid or is expected to reach it. So a larger grid is
+    # recommended even if the present grid is already wider than the largest contact, 2 * reach.
     needed = max(2 * reach, min(wide, long)) * _MARGIN
     return max(wide, needed), max(long, needed)

@@ -22,13 +22,14 @@ from restitution.theory import Hertz, Kendall
 _TILTED = 0.5  # fraction of the variance of the heights that a plane explains
 _OBLONG = 0.01  # relative difference between the two edge lengths of a pixel
 _STEEP = 0.5  # rms slope beyond which small-slope theory is inaccurate
-# Plausible range of p/E*, where p is the pressure of a fully plastic contact: from very soft metals
-# to the ideal strength of solids.
+# Plausible range of p/E*, where p is the pressure of a fully plastic contact. The lower limit
+# belongs to very soft metals, the upper limit to the ideal strength of solids.
 _PRESSURES = (1e-5, 0.3)
 _NEAR_EDGE = 0.1  # distance of first touch from the edge, as a fraction of the width of the grid
 
 # The displacement outside the contact is computed for smooth bodies and multiplied by this factor.
-# It is below 1, because the force of rough bodies at the same indentation is smaller.
+# The factor is below 1, because at the same indentation the force between rough bodies is smaller
+# than between smooth bodies.
 _DISPLACED = 0.7
 
 
@@ -66,7 +67,7 @@ def doubtful(contact: Contact, indentation: float) -> list[Finding]:
 
     They are the findings of `resolution_findings` and the following ones:
 
-    * `tilted-scan`: `file`, and the fraction `explained` of the height variance that a plane
+    * `tilted-scan`: `file`, and `explained`, the fraction of the height variance that a plane
       explains;
     * `edge-predicted`: smallest `gap` on the edge of the grid at first touch (m), and the values of
       `edge_values`;
@@ -109,7 +110,7 @@ def _coarse_range(contact: Contact) -> Finding | None:
 
 def _tilt(contact: Contact) -> Finding | None:
     surface = contact.surface
-    # The provenance of a sum of surfaces stores the levelling of each of them under its own key.
+    # For a sum of surfaces, the provenance stores the levelling of each summand in a separate key.
     levelled = {value for key, value in surface.provenance.items() if key.endswith("levelling")}
     if not levelled & {"none", "center"}:
         return None
@@ -137,13 +138,14 @@ def _edge(contact: Contact, indentation: float) -> Finding | None:
 
 
 def _closed_gap(contact: Contact, indentation: float, distance: float) -> float:
-    """The largest undeformed gap (m) that is predicted to close at `distance` from the centre.
+    """Largest undeformed gap (m) that is predicted to close at `distance` from the centre.
 
-    The result is the indentation minus the displacement F/(πE*r) at the distance r from the centre
-    of a smooth contact under the force F. With adhesion, the pull-off displacement of a flat punch
-    as wide as the contact is added to the indentation. The displacement F/(πE*r) is reduced if the
-    roughness is not small compared with the indentation. Only a few asperities are then in contact,
-    and the force is smaller.
+    The result is the indentation minus the elastic displacement at this distance. With adhesion,
+    the pull-off displacement of a flat punch as wide as the contact is added to the indentation.
+
+    At the distance r, the displacement around a smooth contact under the force F is F/(πE*r). For
+    rough bodies it is reduced. The reduction is larger if the roughness is large compared with the
+    indentation: only a few asperities are then in contact, and the force is smaller.
     """
     pair, p_y, w = contact.pair, contact.hardness, contact.work_of_adhesion
     E_star, deeper = pair.contact_modulus, indentation

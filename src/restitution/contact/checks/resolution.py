@@ -23,12 +23,12 @@ from restitution.theory import JKR, FirstYield, Hertz
 # With eight or more nodes per contact radius, results for smooth spheres are within 0.3 % of
 # tabulated values (docs/resolution.md).
 NODES_PER_RADIUS = 8
-# If half of the contact of rough bodies is in patches of at least 20 nodes, restitution has an rms
-# deviation of 2 % from the value on the finest grid, and deviates by at most 5 %
-# (docs/resolution.md).
+# If half of the contact area of rough bodies is in patches of at least 20 nodes, COR deviates from
+# its value on the finest grid by 2 % (rms) and by at most 5 % (docs/resolution.md).
 NODES_PER_PATCH = 20
 # With four or more nodes per pull-off radius and `crack-closure`, the pull-off force of smooth
-# spheres is within 2.3 % of JKR at all positions of the apex that were compared (docs/adhesion.md).
+# spheres is within 2.3 % of JKR. This held for all tested positions of the apex relative to the
+# nodes (docs/adhesion.md).
 ADHESIVE_NODES = 4
 # Relative error of the pull-off force of a cohesive contact if the grid resolves the range of the
 # attraction.
@@ -182,10 +182,9 @@ def resolution_findings(contact: Contact, indentation: float) -> list[Finding]:
 
 
 def median_patch(patches: NDArray[np.int64]) -> int:
-    """Size (nodes) of the patch that contains the median contact node.
+    """Median patch size (nodes): half of all contact nodes are in patches of at least this size.
 
-    The median refers to the contact nodes ordered by the size of their patches. `patches` are the
-    sizes (nodes) from `State.patch_sizes`, largest first.
+    `patches` are the sizes (nodes) from `State.patch_sizes`, largest first.
     """
     if patches.size == 0:
         return 0
@@ -194,7 +193,7 @@ def median_patch(patches: NDArray[np.int64]) -> int:
 
 
 def resolves(median_patch_nodes: float) -> bool:
-    """Whether the grid resolves a contact with this number of nodes in the median patch."""
+    """Whether a contact with this result of `median_patch` has enough nodes per patch."""
     return median_patch_nodes >= NODES_PER_PATCH
 
 

@@ -1,8 +1,8 @@
 """Drake: `point_contact_stiffness` and `hunt_crossley_dissipation` of a pair of geometries.
 
-Drake's compliant point contact has the force F = kx (1 + d x′) with the overlap x, the stiffness k
-and the dissipation d. F is never attractive (Drake documentation, Compliant point contact and
-Hydroelastic contact: Hunt & Crossley). Two geometries a and b in contact have
+Drake's compliant point contact has the force F = kx (1 + d x′). Here x is the overlap, k the
+stiffness and d the dissipation. F is never attractive (Drake documentation, Compliant point contact
+and Hydroelastic contact: Hunt & Crossley). Two geometries a and b in contact have
 
     k = k_a k_b/(k_a + k_b),   d = (k_b d_a + k_a d_b)/(k_a + k_b).
 
@@ -68,7 +68,7 @@ class Contact:
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """Write a module to import, and a test collision that prints its coefficient of restitution.
+    """Write a Python module with the contact parameters, and a test collision that prints e.
 
     Returns file names and texts. Raises `CaseError`, `DomainError`.
     """

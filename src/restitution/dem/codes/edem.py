@@ -67,10 +67,10 @@ def _interaction(pair: Pair) -> dict[str, str]:
 def _springs(pair: Pair) -> tuple[float, float]:
     """Return the stiffnesses K1 and K2 (N/m) of the Walton–Braun law fitted to the pair.
 
-    K1 is the loading stiffness. The unloading stiffness is K2 = k_u + S V (m* K1)^½, with the
-    velocity V (m/s) of the export and the reduced mass m*. k_u (the unloading stiffness without
-    hardening) and S (the hardening) are fitted parameters. NaN if there is no such fit, or
-    if V is outside the fitted range.
+    K1 is the loading stiffness. The unloading stiffness is K2 = k_u + S V (m* K1)^½. Here V is the
+    velocity (m/s) of the export and m* the reduced mass. k_u (the unloading stiffness without
+    hardening) and S (the hardening) are fitted parameters. Both stiffnesses are NaN if there is no
+    such fit, or if V is outside the fitted range.
     """
     fit = pair.fitted("walton-braun")
     if fit is None or not pair.law.fits_hold_at(pair.velocity):

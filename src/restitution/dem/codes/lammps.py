@@ -29,8 +29,8 @@ LOWEST = 0.001  # smallest e that is reproduced within 0.5 %, with `STEPS` time 
 FRAGMENT, COLLISION, PACKING = "restitution.lmp", "collision.in", "packing.in"
 _PACKING_STEPS = 50  # number of time steps in the shortest contact of the packing
 _GRAINS = 500  # number of spheres of the packing
-# Duration of the run, as a fraction of the time in which the highest sphere would reach the wall at
-# its initial velocity. Gravity makes the spheres faster.
+# The packing runs for this fraction of the time in which the highest sphere would reach the wall at
+# its initial velocity. The lowest quarter of the spheres has then reached the wall.
 _FALLS = 0.25
 _FILLED = 0.12  # fraction of the initial volume that the spheres fill
 KOKKOS = "restitution_kokkos.lmp"
@@ -51,11 +51,12 @@ _KOKKOS_ENDS = (
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """Write a fragment to include, a fragment for KOKKOS, a test collision, and a packing.
+    """Write the input files for LAMMPS; return file names and texts.
 
-    In the packing, spheres of all types fall on the first wall that has a law with every type of
-    sphere. Without such a wall there is no packing. Returns file names and texts. Raises
-    `CaseError`, `DomainError`.
+    The files are a fragment to include, a fragment for the package KOKKOS, the script
+    `match_velocity.py`, a test collision, and a packing. In the packing, spheres of all types fall
+    on a wall. There is no packing if `table` has no law between spheres, or if no wall has laws
+    with all types of spheres. Raises `CaseError`, `DomainError`.
     """
     walls_only = all(j > len(table.spheres) for _, j in table.laws)
     if not walls_only:
@@ -133,7 +134,7 @@ def _counts(table: PairTable) -> list[int]:
 
 
 def _floor(table: PairTable) -> int | None:
-    """Type number of the first wall that has a law with every type of sphere.
+    """Type number of the first wall for which `table` has the laws with all types of spheres.
 
     None if there is no such wall.
     """

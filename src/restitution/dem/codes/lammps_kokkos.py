@@ -6,14 +6,14 @@ This variant needs the setting `newton off`. The older gran/hooke/history/kk has
 values for all pairs of types.
 
 Each pair gets a Hertz force with a constant damping coefficient (`damping velocity` in LAMMPS).
-The function `hertz_damping` of the module `damping` computes the coefficient. The coefficient of
-restitution e of this model increases with the velocity V, because the dimensionless damping g
-(defined in `damping`) is proportional to V^{−⅕}.
+The function `hertz_damping` of the module `damping` computes the coefficient. In this model, the
+coefficient of restitution e increases with the velocity V. The reason is that the dimensionless
+damping g (defined in `damping`) is proportional to V^{−⅕}.
 
 If there is a single type of particle, the fragment also offers a linear spring, whose e is
-constant. A contact with this spring lasts as long as a Hertz contact. In LAMMPS the damping force
-may be tensile until the overlap is zero, so the damping ratio ζ gives e = exp(−πζ/(1 − ζ²)^½)
-(Schäfer, Dippel, Wolf, J. Phys. I France 6 (1996) 5).
+constant. A contact with this spring lasts as long as a Hertz contact. LAMMPS applies the damping
+force until the overlap is zero, even if the total force is then tensile. Under this condition, the
+damping ratio ζ gives e = exp(−πζ/(1 − ζ²)^½) (Schäfer, Dippel, Wolf, J. Phys. I France 6 (1996) 5).
 """
 
 from __future__ import annotations

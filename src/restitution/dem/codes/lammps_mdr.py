@@ -3,11 +3,10 @@
 `mdr` is an elastic-plastic normal force law in LAMMPS (Zunker & Kamrin 2024). Only pairs that can
 use the law get such a comment.
 
-LAMMPS 22Jul2025 behaves as follows (`tests/dem/test_lammps_mdr.py`). pair_style granular accepts
-one mdr model, with the same values for every pair of types, and no other normal model beside it. A
-wall with mdr crashes LAMMPS unless pair_style has mdr as well. If pair_style has mdr, fix wall/gran
-accepts other values or another model, but fix wall/gran/region accepts only the values of
-pair_style.
+LAMMPS 22Jul2025 behaves as follows (`tests/dem/test_lammps_mdr.py`). If pair_style granular uses
+mdr, all pairs of types must use mdr with the same values. If a wall uses mdr but pair_style does
+not, LAMMPS crashes. If pair_style uses mdr, fix wall/gran accepts other values or another model,
+but fix wall/gran/region accepts only the values of pair_style.
 """
 
 from __future__ import annotations

@@ -1,9 +1,10 @@
-"""LIGGGHTS: `pair_style gran model hertz tangential history`, properties by type and pair of types.
+"""LIGGGHTS: `pair_style gran model hertz tangential history`.
 
-LIGGGHTS computes the E* of a pair from the E and ν of its two types; walls are types, too. So the
-types get the E and ν of the materials, and E*, m* and R* agree with the law. Force and damping
-(Tsuji's form with the coefficient of Antypov & Elliott) act until the overlap is zero, so the force
-is tensile at the end of the contact. The option `limitForce on` would cut off this tension.
+Each property is given for every type or for every pair of types; walls are types, too. LIGGGHTS
+computes the E* of a pair from the E and ν of its two types. So the types get the E and ν of the
+materials, and E*, m* and R* agree with the law. Force and damping (Tsuji's form with the
+coefficient of Antypov & Elliott) act until the overlap is zero. The force is therefore tensile at
+the end of the contact. The option `limitForce on` would cut off this tension.
 """
 
 from __future__ import annotations
@@ -32,9 +33,10 @@ _HARD, _SOFT = 1e9, 5e6
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """Write a fragment to include and a test collision that prints e; return file names and texts.
+    """Write the input files for LIGGGHTS; return file names and texts.
 
-    Raises `CaseError`, `DomainError`.
+    The files are a fragment to include, the script `match_velocity.py`, and a test collision that
+    prints e. Raises `CaseError`, `DomainError`.
     """
     table.require_all(CODE)
     export = Export(table, velocity, CODE, LOWEST, _ENDS)
@@ -60,7 +62,10 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
 
 
 def _hardness(table: PairTable) -> str:
-    """Return the command with which LIGGGHTS accepts all E in `table`; empty if not needed."""
+    """Return the command that makes LIGGGHTS accept the Young's moduli E of all particles.
+
+    Empty if LIGGGHTS accepts them without a command.
+    """
     E = [body.youngs_modulus for body in table.particles]
     if max(E) > _HARD:
         return "hard_particles yes"

@@ -1,18 +1,19 @@
 """MuJoCo: `solimp` and `solref` of a contact pair; `solref` is (−stiffness, −damping).
 
-During a contact, MuJoCo sets the normal acceleration to a₁ = (1 − d) a₀ + d a_ref, where a₀ is the
-acceleration without contact and d the impedance. The reference acceleration a_ref = −bv − kr
-depends on the distance r of the surfaces and its rate v. Its coefficients are b = damping/d_max and
-k = stiffness d(r)/d_max², where d_max is the largest impedance (MuJoCo documentation, Computation:
-Constraint model, and Modeling: Solver parameters). If the impedance d is constant, the equation of
-motion is
+During a contact, MuJoCo sets the normal acceleration to a₁ = (1 − d) a₀ + d a_ref. Here a₀ is the
+acceleration without contact, d is the impedance, and a_ref = −bv − kr is the reference
+acceleration. r is the distance of the surfaces, and v is its rate. The coefficients are
+b = damping/d_max and k = stiffness d(r)/d_max², where d_max is the largest impedance (MuJoCo
+documentation, Computation: Constraint model, and Modeling: Solver parameters). If the impedance d
+is constant, the equation of motion is
 
     r″ = −stiffness r − damping r′ + (1 − d) a₀.
 
-This is a linear spring and dashpot whose stiffness and damping are per unit of mass, so e does not
-depend on the masses. The contact force is never attractive, so `damping.dashpot_ratio` gives the
-damping ratio ζ for e. The usual formula e = exp(−πζ/(1 − ζ²)^½) does not apply: with the ζ from
-this formula for e = 0.6, MuJoCo returns 0.632.
+This is a linear spring and dashpot. Its stiffness and damping are per unit of mass, so the
+coefficient of restitution e does not depend on the masses. The contact force is never attractive,
+so `damping.dashpot_ratio` gives the damping ratio ζ for e. The usual formula
+e = exp(−πζ/(1 − ζ²)^½) does not apply: with the ζ from this formula for e = 0.6, MuJoCo returns
+0.632.
 
 d = 0.9999, the largest value that MuJoCo accepts, makes e independent of the friction cone.
 With d = 0.9 and pyramidal cones, MuJoCo returns 0.79 for e = 0.8. The stiffness is chosen such that
@@ -50,12 +51,12 @@ _COARSE = 50  # number of time steps in a softened contact
 
 @dataclass(frozen=True)
 class Contact:
-    """Durations (s) and damping ratio ζ (dimensionless) of the contact of a pair.
+    """Durations (s) and damping ratio (dimensionless) of a contact between two bodies.
 
-    `duration` is the duration of an elastic Hertz contact. It is longer if the acceleration would
-    otherwise exceed `_LARGEST`. `soft_duration` is the duration of a softened contact, which allows
-    longer time steps. Without damping, the largest overlap of this contact is the fraction
-    `_DEEPEST` of the smaller radius. `ratio` is ζ.
+    `duration` is that of an elastic Hertz contact, or longer if the acceleration would otherwise
+    exceed `_LARGEST`. `soft_duration` is that of a softened contact, which allows longer time
+    steps. Without damping, the largest overlap of the softened contact is the fraction `_DEEPEST`
+    of the smaller radius. `ratio` is the damping ratio ζ.
     """
 
     pair: Pair

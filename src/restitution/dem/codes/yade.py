@@ -3,12 +3,14 @@
 YADE adds the damping force 2β(m* dF/dδ)^½ dδ/dt to Hertz's force F at the overlap δ. The sum is
 never attractive, so a contact ends when the force returns to zero. YADE 2023.02a converts the
 coefficient of restitution `en` to β by a fit (Thornton et al., Powder Technol. 233 (2013) 30, eqs.
-B6, B7). This fit returns e = 0.979 for en = 0.99 and e = 0.948 for en = 0.95. Other releases
-convert `en` differently. The export therefore writes β (`betan`). A new fit, based on the motion
-under the two forces, computes β from e. The new fit is valid for e ≥ 0.01, and the resulting e
-differs by less than 10⁻⁵ from the required e. With the coefficients c_k in `_FIT`, the fit is
+B6, B7). With this fit, contacts have e = 0.979 for en = 0.99 and e = 0.948 for en = 0.95. Other
+releases convert `en` differently. The export therefore writes β (`betan`), which it computes from e
+by a fit of its own:
 
-    β = L exp(Σ c_k L^k),  L = −ln e.
+    β = L exp(Σ c_k L^k),  L = −ln e,  with the coefficients c_k in `_FIT`.
+
+This fit reproduces the motion under the elastic and the damping force. It is valid for e ≥ 0.01,
+and the resulting e differs by less than 10⁻⁵ from the required e.
 
 YADE computes E* from the two materials. On a wall, YADE uses R/2 for R*, which makes the contact
 softer by a factor of √2 and does not change e. Each contact has its own `betan`. The exported

@@ -73,6 +73,7 @@ class OperatorCache:
             self._values.popitem(last=False)
 
 
-# Cache of operators and kernels for the whole process. A small number of items is enough: the box
-# of a solve grows with the contact, so older operators are rarely used again.
+# Cache of operators and kernels for the whole process. A few items are enough: each operator fits
+# one size of the rectangle of nodes that is solved. This rectangle grows with the contact, so
+# operators for smaller rectangles are rarely used again.
 operator_cache = OperatorCache(max_bytes=384 * 2**20, max_items=17)

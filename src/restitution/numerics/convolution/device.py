@@ -1,8 +1,8 @@
 """Devices that store and convolve arrays: the CPU with compiled loops, or a GPU with CuPy.
 
 The solver accepts any arrays that follow NumPy's protocols (`__array_ufunc__`, NEP 13, and
-`__array_function__`, NEP 18), such as CuPy arrays. The protocols do not cover the creation and
-convolution of arrays, so these are methods of a `Device`. Solves run on the `current` device:
+`__array_function__`, NEP 18), such as CuPy arrays. The protocols do not cover how arrays are
+created and convolved; a `Device` has methods for both. Solves run on the `current` device:
 
     with on_device("gpu"):
         state = solve(contact, 1e-6)
@@ -65,12 +65,12 @@ class Device(Protocol):
         workspace: Array,
         out: Array,
     ) -> None:
-        """Multiply the Fourier modes of `values` by a real, even spectrum; write to `out`.
+        """Multiply the Fourier modes of `values` by `spectrum`, transform back, write to `out`.
 
-        `values` and `out` have shape (nx, ny); `values` is padded with zeros to the shape
-        `periods`. `spectrum` is the transposed quadrant from `even_spectrum`. The computation has
-        the precision of `spectrum`. `values` is divided by `scale` before the transform, and the
-        result is multiplied by `scale`.
+        `values` and `out` have shape (nx, ny). `values` is padded with zeros to the shape
+        `periods`. `spectrum` is one quadrant of a real, even spectrum: the transposed result of
+        `even_spectrum`. Its precision is the precision of the computation. `values` is divided by
+        `scale` before the transform, and the result is multiplied by `scale`.
         """
 
 
@@ -123,8 +123,8 @@ class _LibraryDevice:
         modes = self._fft.fft(modes, n=px, axis=0)
         weights, last = spectrum.T, px // 2
         modes[: last + 1] *= weights
-        # The other modes have negative wave numbers. If the period is odd, the largest wave number
-        # also has a negative counterpart.
+        # The modes after index `last` have negative wave numbers. If the period is odd, −`last` is
+        # one of these wave numbers.
         modes[last + 1 :] *= weights[px - last - 1 : 0 : -1]
         modes = self._fft.ifft(modes, axis=0, norm="forward", overwrite_x=True)[:nx]
         padded = self._fft.irfft(modes, n=py, axis=1, norm="forward")

@@ -47,8 +47,8 @@ class _Spectral:
 
     `count` is the number of multiplications so far.
 
-    Several threads may use one operator, but a lock on its workspace lets only one of them compute
-    at a time. To compute in parallel, each thread uses its own copy from `with_own_workspace`. The
+    Threads that share one operator compute one after the other, because a lock guards its
+    workspace. To compute in parallel, each thread uses its own copy from `with_own_workspace`. The
     workspace is allocated on first use and kept.
     """
 
@@ -134,7 +134,7 @@ class PeriodicConvolution(Convolution):
 
 
 class SpectralFilter(_Spectral):
-    """Multiplication by a real, even symbol in Fourier space: a cheap approximate convolution.
+    """Multiplication by a real, even spectrum in Fourier space: a cheap approximate convolution.
 
     Arrays are padded only to the next fast size of the transform, so the filter is periodic. The
     filter computes in single precision, which is accurate enough for a preconditioner.

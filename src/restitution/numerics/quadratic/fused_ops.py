@@ -1,9 +1,9 @@
 """Steps of the minimiser. A compiled loop fuses the array operations of each step into one pass.
 
-All functions share the notation of `minimise`: the point p, the gradient g at p, the lower and the
-upper bound (numbers, or arrays of the shape of p), the projected gradient r, the preconditioned
-gradient z, the step d and the product Kd of K with d. p, g and the bounds are in double precision;
-r, z, d and Kd are in double or single precision.
+The symbols are those of `minimise`: p is the point, g the gradient at p, r the projected gradient,
+z the preconditioned gradient, d the step, and Kd the product of K and d. Each bound is a number or
+an array of the shape of p. p, g and the bounds are in double precision; r, z, d and Kd are in
+double or single precision.
 """
 
 from __future__ import annotations
@@ -37,10 +37,10 @@ def as_rows(lower: Bound, upper: Bound, p: Array) -> Bounds:
 
 @use_loop
 def projected_gradient(p: Array, g: Array, b: Array, bounds: Bounds, out: Array) -> float:
-    """Turn the product K p in `g` into the gradient K p − b, and write its projection to `out`.
+    """Replace the product K p in `g` by the gradient K p − b; write its projection to `out`.
 
-    The projected gradient is zero at nodes that lie on a bound and that a descent step would move
-    out of bounds. At the other nodes (free nodes) it equals the gradient. Return the largest
+    A node on a bound is not free if a descent step would move it out of bounds. There the projected
+    gradient is zero. At all other nodes (free nodes) it equals the gradient. Return the largest
     magnitude of the projected gradient, which is the violation of the optimality conditions.
     """
     g -= b
@@ -74,8 +74,8 @@ def projected_direction(
 ) -> tuple[float, bool]:
     """Overwrite the step d with `beta` d − `length` z, truncated so that p + d is within bounds.
 
-    The new step is zero at nodes that are not free (`projected_gradient`). Return r·d and whether a
-    bound truncated the step at any node.
+    The new step is zero at nodes that are not free (see `projected_gradient` for free nodes).
+    Return r·d and whether a bound truncated the step at any node.
     """
     np.multiply(d, beta, out=d, dtype=np.float64)
     np.subtract(d, np.multiply(z, length, dtype=np.float64), out=d)
@@ -99,9 +99,8 @@ def take_step(
 ) -> float:
     """Update p to p + `step` d and g to g + `step` Kd.
 
-    Write the projected gradient at the new point to `out` and return its largest magnitude, as
-    `projected_gradient` does. After a full step (`step` = 1), nodes where d was truncated at a
-    bound lie exactly on this bound, in spite of rounding.
+    Write the projected gradient at the new point to `out`, and return its largest magnitude. If
+    `step` is 1, nodes where a bound truncated d lie exactly on this bound, in spite of rounding.
     """
     lower, upper = bounds
     low, high = ((step == 1) & (d == (bound - p).astype(d.dtype, copy=False)) for bound in bounds)

@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 def restrict(fine: Array, coarse: Array) -> None:
     """Write the means of `fine` over 2 × 2 nodes into `coarse`.
 
-    If the number of rows or columns is odd, the last row or column counts twice.
+    If the number of rows is odd, the last row is used twice. The same holds for columns.
     """
     rows, columns = (n % 2 for n in fine.shape)
     fine = np.pad(fine, [(0, rows), (0, columns)], mode="edge")

@@ -53,7 +53,8 @@ def damp_local_mean(r: Array, share: float, places: int, out: Array) -> None:
 def _hat_weights(r: Array, places: Array) -> list[Array]:
     """Hat functions of the places, evaluated at the nodes of `r`.
 
-    Returns one matrix for each axis, shape (nodes, places) along this axis.
+    Returns one matrix for x and one for y. Each has one row for each node and one column for each
+    place along its axis.
     """
     hats = []
     for n, m in zip(r.shape, places.shape, strict=True):

@@ -1,4 +1,4 @@
-"""Minimisation of a convex quadratic within bounds: the solver of all non-cohesive contacts.
+"""Minimisation of a convex quadratic within bounds: the solver of most contacts.
 
     minimise  ½ pᵀK p − pᵀb   subject to   lower ≤ p ≤ upper
 
@@ -8,7 +8,8 @@ gradient g = K p − b, the solution satisfies the conditions of Karush, Kuhn an
     g ≥ 0 where p = lower,   g = 0 between the bounds,   g ≤ 0 where p = upper.
 
 The largest violation of these three conditions measures the error of a solution. The caller decides
-what the bounds mean (contact, yield, adhesion).
+what the bounds mean (contact, yield, friction, JKR adhesion). Contacts with an attraction of finite
+range are solved by `truncated_newton` instead.
 """
 
 from __future__ import annotations
@@ -40,14 +41,15 @@ _ROUNDING = 10.0
 # Each step updates the gradient. The gradient is computed anew when the violation falls below this
 # multiple of the estimated error of the updated gradient.
 _CLEAR = 3.0
-# If a bound truncates the projected step and the optimal step exceeds this fraction of the
-# projected step, take the full projected step, so that nodes reach the bound.
+# If the optimal length exceeds this fraction of a step that a bound has truncated, the step is
+# taken in full. So nodes reach the bound.
 _FULL_STEP_FRACTION = 0.8
-# Initial trial length, as a multiple of the preconditioned gradient. It is near the typical
-# accepted length, which is below 1 because bounds truncate early steps.
+# First trial length, as a multiple of the preconditioned gradient. The first steps of a solve
+# typically have about this length. It is below 1 because bounds truncate these steps.
 _INITIAL_STEP = 0.3
-# Smallest and largest factor by which the trial length changes (before damping), and the exponent
-# that damps the change. Damping is needed because the optimal length oscillates from step to step.
+# After each step, the trial length is multiplied by the ratio of the optimal length to the trial
+# length. This ratio is limited to the range from _MIN_STEP to _MAX_STEP. The exponent _STEP_DAMPING
+# of the ratio damps oscillations of the optimal length from step to step.
 _MIN_STEP, _MAX_STEP, _STEP_DAMPING = 0.1, 3.0, 0.5
 # If the trial length has decreased to this value, the preconditioned gradient is almost
 # perpendicular to the gradient. One step then follows the gradient itself.
@@ -105,18 +107,19 @@ def minimise_quadratic(
 ) -> Minimum:
     """Solve `problem` by projected, preconditioned conjugate gradients (Polak–Ribière+).
 
-    The search on the free nodes follows Polonsky and Keer (1999, Wear 231, 206–219), with bounds on
-    both sides and four changes:
+    The search on the free nodes follows Polonsky and Keer (1999, Wear 231, 206–219). An upper bound
+    is added, and four points are changed:
 
-    1. The direction has a trial length, which follows from earlier steps. It is projected onto the
-       bounds before the product with K, not after it. Then it is scaled to its optimal length, as
-       far as the bounds allow. So an iteration takes one product, and no step raises the energy.
-    2. The direction is not reset when nodes reach or leave a bound. Polak–Ribière's β is limited to
-       the range from zero to the β of Fletcher and Reeves (Gilbert and Nocedal 1992, SIAM J. Optim.
-       2, 21–42). The direction contains the trial length as a factor. So β is also multiplied by
-       the factor by which the trial length last changed.
-    3. The projected gradient is preconditioned by an approximate inverse of K. This inverse may be
-       unsymmetric and may give an ascent direction.
+    1. The direction first gets a trial length, which follows from earlier steps. It is projected
+       onto the bounds before the product with K, not after it. Then it is scaled to its optimal
+       length, as far as the bounds allow. So an iteration takes one product, and no step raises the
+       energy.
+    2. The direction is not reset when nodes reach or leave a bound. The factor β of Polak and
+       Ribière is limited to the range from zero to the β of Fletcher and Reeves (Gilbert and
+       Nocedal 1992, SIAM J. Optim. 2, 21–42). Each direction contains its trial length as a factor.
+       So β is also multiplied by the ratio of the new trial length to the previous one.
+    3. The projected gradient is preconditioned by an approximate inverse of K. This inverse can be
+       unsymmetric and give an ascent direction, which is then reversed.
     4. If the preconditioned gradient makes no progress, one step follows the gradient itself. So
        the solve does not stall.
 
@@ -130,15 +133,16 @@ def minimise_quadratic(
     true. If `start` is within the bounds and the product of `K_single` and `start` is known, give
     this product as `K_start`. The first gradient then uses `K_start` and overwrites it.
 
-    Each step updates the gradient by the product of K and the step. The error of this updated
-    gradient is the sum, in quadrature, of the estimated rounding errors of the products. The
-    gradient is computed with K again when the violation is within `tolerance` or no longer well
-    above this error. With `accept_estimated_gradient`, the updated gradient is final if the
-    violation plus its error is within `tolerance`. Without this option, the final gradient is
-    always computed with K at the final point. If the solve does not converge, `converged` of the
-    result is False; no exception is raised.
+    Each step updates the gradient by the product of K and the step. The estimated rounding errors
+    of these products are added in quadrature; the sum is the error of the updated gradient. The
+    gradient is computed with K again when the violation is within `tolerance` or close to this
+    error. With `accept_estimated_gradient`, the updated gradient is final if the violation plus the
+    error is within `tolerance`. Without this option, the final gradient is always computed with K
+    at the final point. If the solve does not converge, `converged` of the result is False; no
+    exception is raised.
     """
-    # Work arrays that only determine the direction have the same precision as the products.
+    # Precision of the direction, of the arrays from which it is computed, and of its product
+    # with K.
     work_type: Any = np.float64 if problem.K_single is None else np.float32
     measured = _root_mean_square if mean_violation else _largest
     K, b, K_single = problem.K, problem.b, problem.K_single or problem.K

@@ -1,13 +1,13 @@
 """Minimisation within bounds, first on coarser grids and then on a window of the finest grid.
 
-The problem is that of `minimise` with lower = 0 on a uniform grid: minimise ½ pᵀK p − pᵀb. The
-unknown p is a pressure. Restricting b to means over 2 × 2 nodes gives the same problem on a grid
-with half as many nodes along each axis. The solution on this coarser grid is a good first guess of
-all but the shortest waves (nested iteration; Venner and Lubrecht 2000, *Multilevel Methods in
-Lubrication*). The guess also shows where the pressure is nonzero, so the fine problem is solved on
-a window around this region. The optimality conditions are then checked on all nodes. If nodes
-outside the window violate them, the window is widened to include these nodes and the problem is
-solved again.
+This module solves the problem of `minimise` on a uniform grid: minimise ½ pᵀK p − pᵀb with the
+lower bound 0. The unknown p is a pressure. If b is replaced by its means over 2 × 2 nodes, the same
+problem arises on a grid with half as many nodes along each axis. The solution on this coarser grid
+is a good first guess of p, apart from the shortest waves (nested iteration; Venner and Lubrecht
+2000, *Multilevel Methods in Lubrication*). The guess also shows where the pressure is nonzero, so
+the fine problem is solved on a window around this region. The optimality conditions are then
+checked on all nodes. If nodes outside the window violate these conditions, the window is widened to
+include these nodes, and the problem is solved again.
 """
 
 from __future__ import annotations
@@ -39,31 +39,31 @@ Mask = NDArray[np.bool_]
 # At level n the spacing is 2ⁿ times the spacing of the finest grid.
 Operators = Callable[[tuple[int, int], int], tuple[Convolution, SpectralFilter]]
 
-# Smallest number of nodes along the shorter edge of a grid for which the solve starts from a guess
-# on the next coarser grid. On smaller grids the guess costs more time than it saves. The first
+# A solve starts from a guess on the next coarser grid if the shorter edge of its own grid has at
+# least this number of nodes. On smaller grids the guess costs more time than it saves. The first
 # number applies to the finest grid, and the second number to coarser grids.
 MIN_NODES_FOR_GUESS, _MIN_NODES_TO_COARSEN = 120, 80
 # Tolerance on coarser grids, as a fraction of the largest b. A smaller tolerance gains nothing,
 # because prolongation errors are larger.
 _COARSE_ACCURACY = 1e-2
 COARSE_ITERATIONS = 60  # largest number of iterations on a coarser grid
-MARGIN = 3  # number of nodes by which the window is larger than the guessed contact on each side
+MARGIN = 3  # number of nodes that the window has on each side of the guessed contact
 
-# Largest window, as a fraction of all nodes. A larger window saves less time than the check of all
-# nodes takes.
+# Largest window, as a fraction of all nodes. The solve on a larger window and the check of all
+# nodes together take longer than a solve on the whole grid.
 _MAX_WINDOW_FRACTION = 0.7
-_PLACES = 8  # number of places along each axis for which local means are computed (`local_mean`)
+_PLACES = 8  # number of local means along each axis (see the module `local_mean`)
 
-# In a nearly fully plastic contact, the gradient is used to correct the contact edge of a guess.
-# The guess is corrected if at most the fraction _MAX_FREE_FRACTION of the contact nodes is strictly
-# between the bounds. The pressure at a node changes by the fraction _GAP_FRACTION of −g/K₀₀. Here g
-# is the gradient at the node and K₀₀ the diagonal of K. The full change −g/K₀₀ would make g zero if
-# no other pressure changed. Any fraction from 0.15 to 0.5 works nearly as well.
+# A contact counts as nearly fully plastic if at most the fraction _MAX_FREE_FRACTION of the contact
+# nodes is strictly between the bounds. The contact edge of the guess is then corrected: each
+# pressure changes by _GAP_FRACTION times −g/K₀₀. Here g is the gradient at the node and K₀₀ the
+# diagonal of K. The full change −g/K₀₀ at one node alone would make g zero there. Any _GAP_FRACTION
+# from 0.15 to 0.5 works nearly as well.
 _MAX_FREE_FRACTION, _GAP_FRACTION = 0.05, 0.3
-# The damping factor of the local mean is the smaller of 1 and _USUAL_STIFFNESS/q. Here q is an
-# estimated Rayleigh quotient of K·M for a vector that is constant on the free nodes (those strictly
-# between the bounds), and M is the approximate inverse of K. If the factor is larger than
-# _MAX_DAMPING_FACTOR, damping saves no time, and the local mean is not damped.
+# The damping factor of the local means is _USUAL_STIFFNESS/q, but at most 1. Here q is an estimated
+# Rayleigh quotient of K·M, where M is the approximate inverse of K. The vector of this quotient is
+# constant on the free nodes (those strictly between the bounds). A factor above _MAX_DAMPING_FACTOR
+# would save no time; the local means are then not damped.
 _USUAL_STIFFNESS, _MAX_DAMPING_FACTOR = 3.5, 0.7
 
 
@@ -80,9 +80,9 @@ def solve_multilevel(
 
     `operators` builds K and its approximate inverse. `b` has shape (nx, ny); `upper` is a number or
     an array of this shape. `tolerance` limits the violation of the optimality conditions and has
-    the units of `b`. `periodic` states whether the operators are periodic. With periodic operators,
-    the fine problem is solved on the whole grid, and only grids of even size are coarsened. The
-    approximate inverse of a periodic K is nearly exact, so it is used without damping.
+    the units of `b`. `periodic` is true if the operators are periodic. Then the fine problem is
+    solved on the whole grid, and only grids of even size are coarsened. The approximate inverse of
+    a periodic K is nearly exact, so it is used without damping.
 
     Return the result and the number of products with K on the finest grid. If the solve does not
     converge, `converged` of the result is False; no exception is raised.
@@ -140,7 +140,7 @@ def solve_multilevel(
 
 
 def mean_damped_preconditioner(inverse: Operator, p: Array, b: Array, upper: Bound) -> Operator:
-    """Return `inverse`, preceded by a damping of the local means of its argument.
+    """Return an operator that damps the local means of its argument and then applies `inverse`.
 
     A residual that is constant on the contact nodes drops to zero at the contact edge. This drop
     contains short waves. The inverse of a smoothing operator amplifies short waves, more so on
@@ -168,7 +168,9 @@ def mean_damped_preconditioner(inverse: Operator, p: Array, b: Array, upper: Bou
 def mean_damping(inverse: Operator, p: Array, b: Array, upper: Bound) -> float:
     """Return the factor of `mean_damped_preconditioner`, or 1 if no damping is needed."""
     free, free_nodes, contact_nodes = _between_the_bounds(p, upper)
-    if free_nodes <= 0.5 * contact_nodes:  # no initial guess of p, or most contact nodes yield
+    # Without an initial guess (p = 0), or if at least half of the contact nodes yield, nothing is
+    # damped.
+    if free_nodes <= 0.5 * contact_nodes:
         return 1.0
     constant: Any = free.astype(np.float32)
     image = inverse(constant, out=np.empty_like(constant))
@@ -207,7 +209,7 @@ def _between_the_bounds(p: Array, upper: Bound) -> tuple[Mask, int, int]:
 
 
 def _is_worth_its_check(window: Box, size: tuple[int, int]) -> bool:
-    """Whether a window on a grid of this size saves more time than the check of all nodes takes."""
+    """Whether solving on `window` and then checking all nodes is faster than solving on all."""
     rows, columns = shape_of(window)
     return rows * columns <= _MAX_WINDOW_FRACTION * size[0] * size[1]
 
@@ -241,8 +243,8 @@ def _first_guess(
         prolong(found.point, guess)
         # A node can have a smaller bound than the nodes of the coarser grid around it.
         return np.minimum(guess, upper, out=guess) if _is_array(upper) else guess
-    # In a nearly fully plastic contact, the pressure jumps from the upper bound to zero between two
-    # nodes. At the first node the gradient is minus the plastic displacement, and at the second
-    # node it is the gap. The two gradients show how far the jump is from each node.
+    # In a nearly fully plastic contact, the pressure jumps from the upper bound at one node to zero
+    # at the next. The gradient is minus the plastic displacement at the yielded node, and the gap
+    # at the open node. These two lengths show how far the contact edge is from each node.
     prolong(found.point - _GAP_FRACTION / K.diagonal * found.gradient, guess)
     return np.clip(guess, 0.0, upper, out=guess)

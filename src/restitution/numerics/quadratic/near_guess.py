@@ -1,17 +1,17 @@
 """Approximate minimisation without upper bound, on a window around a guess from coarser grids.
 
-The problem is that of `multilevel` with an infinite upper bound: an elastic contact. The coarser
-grid uses means over 2 × 2 nodes, and these means hide the roughness between the nodes. So on a
-rough surface, far too many nodes of the coarser grid are in contact. But the mean pressure on the
-coarser grid is nearly right. Therefore the short waves of the pressure are added to the guess, and
-negative pressures are set to zero. Then the positive pressures are lowered until the local means
-of the pressure are nearly the same as on the coarser grid.
+This module solves the problem of `multilevel` for elastic contacts, which have no upper bound. The
+coarser grid uses means over 2 × 2 nodes, and these means hide the roughness between the nodes. So
+on a rough surface, far too many nodes of the coarser grid are in contact. But the mean pressure on
+the coarser grid is nearly right. Therefore the guess from the coarser grid is corrected in three
+steps. Short waves of the pressure are added. Negative pressures are set to zero. The positive
+pressures are lowered until their local means are nearly the same as on the coarser grid.
 
-The preconditioner also keeps the local means nearly constant during the iterations. It is an
-approximate inverse of K. If it were applied to a residual with short waves on separate contact
-patches, it would also change the mean pressure, and later iterations would have to undo this
-change. So the preconditioner damps the local means of its argument (see
-`multilevel.mean_damped_preconditioner`) and the local means of its result.
+During the iterations, the preconditioner keeps the local means nearly constant. It is based on an
+approximate inverse of K. On separate contact patches, this inverse alone would convert short waves
+of the residual to a change of the mean pressure. Later iterations would have to undo this change.
+So the local means are damped twice: before the approximate inverse is applied (see
+`multilevel.mean_damped_preconditioner`) and after it.
 """
 
 from __future__ import annotations
@@ -48,8 +48,8 @@ from restitution.numerics.quadratic.multilevel import (
 )
 
 _COARSE_ACCURACY = 1e-3  # tolerance on coarser grids, as a fraction of the largest b
-_PLACES = 12  # number of places along each axis for which local means are computed (`local_mean`)
-_PASSES = 4  # steps of Newton's method for the local means of the guess
+_PLACES = 12  # number of local means along each axis (see the module `local_mean`)
+_PASSES = 4  # Newton steps that restore the local means of the guess
 
 
 def solve_near_guess(
@@ -60,10 +60,10 @@ def solve_near_guess(
     The arguments are those of `solve_multilevel`, but `tolerance` limits the root mean square of
     the violation. The largest violation often occurs at a few nodes that hardly affect the result.
 
-    The window includes the nodes where the guess has pressure. It also includes the nodes where the
-    displacement K p from the coarser grid is too small to separate the bodies. The other nodes are
-    neither solved nor checked. Return the result on the window, the window, and the number of
-    products with K on the window.
+    The window includes all nodes where the guess has pressure. It also includes all nodes where the
+    bodies overlap after the displacement K p of the guess. Nodes outside the window are neither
+    solved nor checked. Return the result on the window, the window, and the number of products with
+    K on the window.
     """
     size = b.shape[0], b.shape[1]
     p, displacement, window = np.zeros_like(b), np.zeros_like(b), None
@@ -126,10 +126,11 @@ def _solve_from(
 
 
 def add_short_waves(guess: Array, displacement: Array, inverse: Operator, b: Array) -> Array:
-    """Add the pressure −`inverse` (K p − b) to the guess p.
+    """Add the pressure −`inverse` r to the guess p, where r is the projected gradient.
 
-    The result has no negative pressure, and nearly the same local means as the guess.
-    `displacement` is K p from the coarser grid, so it lacks only short waves. It is overwritten.
+    r is K p − b on free nodes and zero elsewhere. The result has no negative pressure, is zero
+    where r = 0, and has nearly the same local means as the guess. `displacement` is K p from the
+    coarser grid, so it lacks only short waves. It is overwritten.
     """
     p: Any = guess.astype(np.float32)
     free, change = np.empty_like(p), np.empty_like(p)
@@ -148,8 +149,8 @@ def add_short_waves(guess: Array, displacement: Array, inverse: Operator, b: Arr
 def balanced_preconditioner(inverse: Operator, p: Array, b: Array) -> Operator:
     """Return an operator that damps local means, applies `inverse`, and damps local means again.
 
-    In total, the response to a local mean is damped by the factor of `mean_damped_preconditioner`.
-    Each of the two steps damps by the square root of this factor.
+    Each damping multiplies the local means by the square root of the factor of
+    `multilevel.mean_damped_preconditioner`. So both together damp by the whole factor.
     """
     share = 1.0 - math.sqrt(mean_damping(inverse, p, b, math.inf))
     if share == 0.0:

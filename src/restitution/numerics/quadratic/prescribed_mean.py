@@ -2,10 +2,11 @@
 
     minimise  ½ pᵀK p + pᵀh   subject to   0 ≤ p ≤ upper,   mean(p) = `mean`.
 
-With the Lagrange multiplier D of the prescribed mean, a scalar, p minimises ½ pᵀK p − pᵀ(D − h).
-The mean of p increases with D, so a bracketed secant method finds D. Every solve for p starts from
-the previous p, with a tolerance that is proportional to the current error of D. The initial D, p
-and slope dD/dmean come from the solution of the same problem on the next coarser grid.
+The prescribed mean has a Lagrange multiplier D, which is a scalar. For a given D, p minimises
+½ pᵀK p − pᵀ(D − h) within the bounds. The mean of p increases with D, so a bracketed secant method
+finds the D at which the mean is as prescribed. Every solve for p starts from the previous p. Its
+tolerance is proportional to the estimated error of D. The same problem is solved first on the next
+coarser grid, which gives the initial D, p and slope dD/dmean.
 """
 
 from __future__ import annotations
@@ -24,12 +25,12 @@ from restitution.numerics.quadratic.minimise import (
 )
 from restitution.numerics.quadratic.multilevel import Operators, coarsened, may_coarsen
 
-_MAX_SOLVES = 60  # solves on one grid after which the search counts as not converged
+_MAX_SOLVES = 60  # largest number of solves on one grid
 
 # Tolerance of a solve as a fraction of the estimated error of the multiplier D.
 _ACCURACY = 0.05
-# The violation of the optimality conditions causes an error of the mean. Largest allowed value of
-# this error, as a fraction of the tolerance of the mean.
+# Largest allowed error of the mean that a violation of the optimality conditions causes, as a
+# fraction of the tolerance of the mean.
 _MEAN_SHARE = 0.5
 # `MeanTarget.residual` and `MeanTarget.precision` on coarser grids.
 _COARSE_RESIDUAL, _COARSE_MEAN = 1e-2, 0.02
@@ -50,11 +51,11 @@ class MeanTarget:
     residual: float
 
     def tolerance(self, multiplier: float, slope: float) -> float:
-        """Return the largest allowed violation of the optimality conditions, a length like D.
+        """Return the largest allowed violation of the optimality conditions, in the units of D.
 
-        `multiplier` is D, and `slope` is dD/dmean. If the conditions are violated by v, the error
-        of the mean is at most v/slope. The allowed violation therefore is the allowed error of the
-        mean times `slope`.
+        `multiplier` is D, and `slope` is dD/dmean. The result is the smaller of two limits. The
+        first limit follows from `residual`. The second limit is the allowed error of the mean times
+        `slope`, because a violation v changes the mean by at most v/slope.
         """
         by_residual = self.residual * abs(multiplier - self.compliance * self.mean)
         return min(by_residual, _MEAN_SHARE * self.precision * self.mean * slope)
@@ -147,8 +148,8 @@ class _Bracket:
     def following(self, x: float, y: float, uncertainty: float) -> float:
         """Return the next argument to try.
 
-        `y` is the latest function value, computed for the argument `x`. Because of the error of
-        `y`, its true argument is unknown, but within the distance `uncertainty` from `x`.
+        `y` is the latest function value, computed at the argument `x`. This value has an error: it
+        is the exact value at an unknown argument, at most `uncertainty` away from `x`.
         """
         if y > 0:
             self._high = min(self._high, x + uncertainty)
