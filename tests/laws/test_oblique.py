@@ -252,7 +252,7 @@ def test_the_command_line(cli, refused, computed_yielding, tmp_path):
         *given, "--angle", "30 deg", "--angle", "60 deg", "--friction", "0.2", "-o", table
     )
     assert re.search(r" (full|part) *\n", said)
-    assert "±: error of the tangential law" in said
+    assert "±: error due to the tangential law" in said
     assert table.read_text().startswith("impact_velocity_m_per_s,angle_rad,time_s")
     assert "--friction: not given" in refused(*given, "--angle", "30 deg")
     assert "--angle" in refused(*given, "--friction", "0.2")
