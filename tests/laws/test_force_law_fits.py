@@ -160,6 +160,43 @@ def test_the_best_of_the_fits_with_a_sticking_velocity_need_not_be_the_one_known
     assert by_restitution["sticking_velocity_m_per_s"] == approx(0.012, rel=1e-3)
 
 
+@pytest.mark.parametrize("V_s", [0.0, 0.01])
+@pytest.mark.parametrize("factor", [0.02, 50])
+def test_thornton_and_ning_from_a_yield_pressure_that_is_far_off(made, law, mass, factor, V_s):
+    """With a much larger yield pressure than that of the points, COR would not depend on it."""
+    smooth = ThorntonNing(law().radius, law().contact_modulus, 4e8)
+    force = smooth.loading_force(smooth.indentation_from_velocity(V, mass))
+    e = np.sqrt(smooth.restitution(V, mass) ** 2 - (V_s / V) ** 2)
+    adhesive = {"work_of_adhesion": 0.2, "sticks_below": V_s} if V_s else {}
+    for each in force_law_fits._thornton_ning(
+        made(e, force, yield_pressure=4e8 * factor, **adhesive)
+    ):
+        assert each.parameters["yield_pressure_Pa"] == approx(4e8, rel=1e-4)
+
+
+@pytest.mark.parametrize("factor", [0.02, 50])
+def test_mdr_from_a_yield_pressure_that_is_far_off(made, law, factor):
+    mass = law(second=WALL).mass
+    E = law(second=WALL).contact_modulus * (1 - 0.25**2)
+    e = MDR(1e-3, E, 0.25, 3e8).restitution(V, mass)
+    found = made(e, spring_force(1e6, mass), second=WALL, yield_pressure=2.8 * 3e8 * factor)
+    assert fit_of(found, "lammps-mdr").parameters["yield_strength_Pa"] == approx(3e8, rel=1e-3)
+
+
+@pytest.mark.parametrize("factor", np.geomspace(0.92, 0.8, 6))
+def test_no_point_lies_at_the_jump_of_mdr(made, law, factor):
+    """A rough contact loses energy at the lowest velocity, too, but less than mdr can lose."""
+    mass = law(second=WALL).mass
+    E = law(second=WALL).contact_modulus * (1 - 0.25**2)
+    found = made(factor * (V / V[0]) ** -0.02, spring_force(1e6, mass), second=WALL)
+    fit = fit_of(found, "lammps-mdr")
+    sphere = MDR(1e-3, E, 0.25, fit.parameters["yield_strength_Pa"])
+    first_yield = np.sqrt(2 * sphere.loading_work(sphere.yield_indentation) / mass)
+    assert np.abs(V / first_yield - 1).min() > 0.019
+    near = sphere.restitution(np.array([[0.985], [1.015]]) * V, mass)
+    np.testing.assert_allclose(near[0], near[1], atol=0.02)
+
+
 def test_a_constant_is_the_mean(made):
     e = np.linspace(0.9, 0.3, V.size)
     found = fit_of(made(e, spring_force(1e6, 1e-6)), "constant")

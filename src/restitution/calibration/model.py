@@ -192,7 +192,10 @@ class CaseModel:
         return parse_case(self.text(x))
 
     def at(self, x: Array, cost: Cost = "full") -> Mean:
-        """Compute the mean curve of the surfaces at `x`. Raises the errors of `curve_of`."""
+        """Compute the curve with the parameters `x`, averaged over the surfaces.
+
+        Raises the errors of `curve_of`.
+        """
         key = (x.tobytes(), cost)
         if key in self._known:
             return self._known[key]

@@ -37,6 +37,14 @@ Begin = Callable[[str, int, int], None]
 """Called before each fit: name of the force law, number of the fit (from 1), number of fits."""
 
 _MOST = 1e6  # largest ratio of unloading to loading stiffness
+# Starting points of a fit, relative to the first guess: of its only parameter, or of the first two
+# of several parameters. Searches begin at the best of these points.
+_SHIFTS = tuple(np.linspace(-7.0, 7.0, 71))
+_FEWER_SHIFTS = (-4.5, -3.0, -1.5, 0.0, 1.5, 3.0), (-4.0, -2.0, 0.0, 1.0, 2.0)
+_SEARCHES = 3, 15  # with one parameter and with several parameters
+# COR of mdr jumps at the velocity of first yield. This velocity differs a little in LAMMPS, so mdr
+# is also compared with the points at velocities that are smaller and larger by this ratio.
+_JUMP = 0.02
 _AT_FORCE_ZERO = "separation, where the force is back to zero"
 
 
@@ -265,8 +273,11 @@ def _mdr(law: Law) -> FittedLaw | None:
     def restitution(V: Array, x: Array) -> Array:
         return MDR(sphere.radius or math.nan, E, nu, math.exp(x[0])).restitution(share * V, mass)
 
+    def restitution_near_jump(V: Array, x: Array) -> Array:
+        return restitution(np.array([[1 - _JUMP], [1.0], [1 + _JUMP]]) * V, x)
+
     start = math.log((law.yield_pressure or 0.03 * law.contact_modulus) / 2.8)
-    x = _fit(law, restitution, [start], [start - 7], [start + 7])
+    x = _fit(law, restitution_near_jump, [start], [start - 7], [start + 7])
     return _judged(
         law,
         "lammps-mdr",
@@ -302,11 +313,14 @@ def _fit(
     low: list[float],
     high: list[float] | None = None,
 ) -> Array:
-    """Fit restitution(V, x) to the points; the parameters x stay within `low` and `high`."""
+    """Fit restitution(V, x) to the points; the parameters x stay within `low` and `high`.
+
+    `restitution` may return several rows, each of which is compared with the points.
+    """
     V, e = _seen(law, "velocity"), _seen(law, "restitution")
 
     def misfit(x: Array) -> Array:
-        return np.asarray(np.nan_to_num(restitution(V, x)) - e)
+        return np.ravel(np.nan_to_num(restitution(V, x)) - e)
 
     return _least_squares(misfit, start, low, high)
 
@@ -319,20 +333,21 @@ def _least_squares(
 ) -> Array:
     """Minimise the sum of squares of `misfit`, with searches from several starting points.
 
-    `misfit` is not smooth, so the sum can have several minima. A single parameter needs only one
-    starting point, because COR (or the force) either always increases or always decreases with it.
+    The sum can have several minima, because `misfit` is not smooth. It can also be constant near
+    `start`: without yielding, for example, COR does not depend on the yield pressure. Therefore,
+    the sum is first computed at many points around `start`, and the searches begin at those with
+    the smallest sums.
     """
     from scipy.optimize import least_squares
 
     low = [-np.inf] * len(start) if low is None else low
     high = [math.log(_MOST) if bound > -20 else np.inf for bound in low] if high is None else high
-    shifts: list[tuple[float, ...]] = [(0.0,)] * len(start)
-    if len(start) > 1:
-        shifts[:2] = (0.0, 1.5, 3.0), (0.0, -4.0, -2.0, 1.0, 2.0)
-    begins = (np.clip(np.add(start, shift), low, high) for shift in product(*shifts))
+    shifts = [_SHIFTS] if len(start) == 1 else [*_FEWER_SHIFTS, *[(0.0,)] * (len(start) - 2)]
+    begins = [np.clip(np.add(start, shift), low, high) for shift in product(*shifts)]
+    begins.sort(key=lambda x: float(np.sum(misfit(x) ** 2)))
     fits = (
         least_squares(misfit, begin, bounds=(low, high), x_scale="jac", xtol=1e-10)
-        for begin in begins
+        for begin in begins[: _SEARCHES[len(start) > 1]]
     )
     x: Array = min(fits, key=attrgetter("cost")).x
     return x

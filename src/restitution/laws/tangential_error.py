@@ -45,8 +45,8 @@ from restitution.laws.time_integration import StoredForce
 # for a rough contact.
 _NUMERICAL, _ROUGH = 0.005, 0.04
 # Contact patches that are not round cause a relative error of the stiffness. This error is χ times
-# _SHAPE for up to _ALIGNED patches. With more patches it decreases, but not above _INDEPENDENT
-# patches, because additional patches are only fragments of larger ones.
+# _SHAPE for up to _ALIGNED patches, and decreases from _ALIGNED to _INDEPENDENT patches. With even
+# more patches it is constant, because additional patches are only fragments of larger ones.
 _SHAPE, _ALIGNED, _INDEPENDENT = 0.35, 4.0, 36.0
 # Relative errors of stiffness and impulse after yield. For rough contacts they are multiplied by
 # the largest ratio of the depths of two neighbouring unloading curves.

@@ -73,9 +73,9 @@ def theories(case: Case, velocities: Array, law: Law | None = None) -> list[Theo
 def theory_lines(
     case: Case, velocities: Array, found: list[Theory]
 ) -> list[tuple[str, bool, Array, Array]]:
-    """Return a line of a figure for each theory in `found`, except for the computed points.
+    """Return a line of a figure for each theory in `found`.
 
-    A line consists of the name, a flag (true for a fit), velocities (m/s) and COR. Closed forms are
+    The computed COR in `found` gets no line. A line consists of the name, a flag (true for a fit), velocities (m/s) and COR. Closed forms are
     evaluated at many velocities between the first and the last of `velocities`, and fits only at
     `velocities`.
     """
