@@ -57,8 +57,8 @@ repeats (smallest and largest in brackets).
 {rows}
 
 With the bound that grows, each depth needs a second solve (`contact/cavity.py`). It solves the
-elastic contact at twice the depth. Its tolerance is a root mean square residual of 5e-5. With either
-bound on the pressure, unloading takes one solve for each depth.
+elastic contact at twice the depth. Its tolerance is a root mean square residual of 5e-5. With
+either bound on the pressure, unloading takes one solve for each depth.
 """
 
 

@@ -75,9 +75,9 @@ def theory_lines(
 ) -> list[tuple[str, bool, Array, Array]]:
     """Return a line of a figure for each theory in `found`.
 
-    The computed COR in `found` gets no line. A line consists of the name, a flag (true for a fit), velocities (m/s) and COR. Closed forms are
-    evaluated at many velocities between the first and the last of `velocities`, and fits only at
-    `velocities`.
+    The computed COR in `found` gets no line. A line consists of the name, a flag (true for a fit),
+    velocities (m/s) and COR. Closed forms are evaluated at many velocities between the first and
+    the last of `velocities`, and fits only at `velocities`.
     """
     V = velocities
     if velocities.size > 1:
