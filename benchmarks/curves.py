@@ -69,7 +69,8 @@ w = 0.09 J/m². One surface is smooth, and four are rough with Rq = 0.1, 0.2, 0.
 correlation length 2 µm). Each contact is loaded to 24 depths from 10 nm to 1 µm. From each depth it
 is unloaded step by step until separation. The last row is the time of one `restitution study`
 command, including its start and the writing of its tables. This command distributes the five
-surfaces among its processes. In the input of this command the smooth surface has Rq = 1 pm.
+surfaces among its processes. The study varies Rq, which must be positive, so its smooth surface has
+Rq = 1 pm.
 """
 
 

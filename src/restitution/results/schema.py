@@ -61,7 +61,7 @@ COLUMNS = {
     "separation_indentation_m": Column(
         "separation_indentation", "m", "indentation at separation", optional=True
     ),
-    "restitution_error": _magnitude("restitution_error", "numerical error of the restitution"),
+    "restitution_error": _magnitude("restitution_error", "error of COR due to the solver"),
     "sticks": Column("sticks", "1", "the bodies stick: unloading returns no work", flag=True),
     "adhesion_resolved": Column(
         "adhesion_resolved",

@@ -10,7 +10,8 @@ from restitution.errors import SurfaceError
 from restitution.surfaces.surface import Surface, is_periodic
 
 # For each provenance entry, the function that combines the values of the parts. The rms heights of
-# the waves that were removed from the parts are added in quadrature.
+# the waves that were removed from the parts are added in quadrature. `removed_slope` is relative to
+# the slope of the original surface, so the largest value of the parts is an upper bound.
 _COMBINED: dict[str, Callable[[list[Any]], str | float]] = {
     "file": lambda files: ", ".join(map(str, files)),
     "y_axis": lambda axes: axes[0],  # direction in which y is drawn (`scan.Y_DOWN`)
@@ -34,7 +35,8 @@ def composite(surfaces: Sequence[Surface]) -> Surface:
     The provenance of the sum contains the provenance of each part, with the prefixes `part_1_`,
     `part_2_`, … As for a single scan, it also states the files, the direction in which maps show y,
     and the pixel size (of the part with the largest pixels). It states whether all parts are
-    periodic. For resampled parts, it states the rms height and slope of the removed waves.
+    periodic. For resampled parts, it states the rms height of the removed waves and
+    an upper bound of their relative rms slope.
 
     Args:
         surfaces: Surfaces on the same grid.
