@@ -152,7 +152,7 @@ def test_a_depth_that_no_impact_reaches_is_left_out(tmp_path):
     assert any(said.startswith("COR is an estimate") for said in law.warnings)
     assert [point.pull_off_force for point in law.points] == [None, None]
     none = text.replace(', "60 nm", "90 nm"', "")
-    with pytest.raises(CaseError, match="no impact has its maximum indentation at a stored depth"):
+    with pytest.raises(CaseError, match="none of the stored depths is the maximum indentation"):
         bare_law(results_of(none, tmp_path / "none"))
 
 

@@ -134,7 +134,7 @@ def coarsest_spacing(pair: Pair, work_of_adhesion: float, z0: float) -> float:
 
 
 def needed_spacing(contact: Contact) -> float:
-    """The `coarsest_spacing` (m) of `contact`."""
+    """Largest grid spacing (m) that resolves the range of the attraction of `contact`."""
     return coarsest_spacing(contact.pair, contact.work_of_adhesion, contact.equilibrium_separation)
 
 

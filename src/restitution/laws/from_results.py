@@ -65,8 +65,8 @@ def _law(out: Path, run: RunResults) -> Law:
     points = _points(run)
     if not points:
         raise CaseError(
-            f"{out}: no impact has its maximum indentation at a stored depth, because adhesion "
-            "pulls the bodies together or the bodies do not touch; add deeper indentations"
+            f"{out}: none of the stored depths is the maximum indentation of an impact, because "
+            "the bodies do not touch or adhesion pulls them together; add deeper indentations"
         )
     warnings = list(summary["warnings"])
     if summary["status"] != "complete":

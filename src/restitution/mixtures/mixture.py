@@ -75,7 +75,7 @@ def _run_all(
     workers: Workers,
     progress: Progress,
 ) -> None:
-    """Make `cases` the cases of the study in `out`, and run those that have no results yet."""
+    """Store `cases` as the cases of the study in `out`, and run those that have no results."""
     swept = {name: [case.values[name] for case in cases] for name in cases[0].values}
     out.study = replace(out.study, swept=swept, cases=cases)
     run_study(out.study, folder, out, workers, progress)

@@ -122,7 +122,7 @@ class Companions:
 
     @cached_property
     def own(self) -> Curve:
-        """The curve of `coarse`."""
+        """Curve with the surface and the materials of the run, on cells twice as large."""
         return self._curve(self.coarse)
 
     def weaker(self, factor: float) -> Curve:

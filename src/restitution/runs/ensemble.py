@@ -238,9 +238,9 @@ def mean_rows(curves: Sequence[Sequence[Row]], errors: Sequence[Row] = ()) -> li
     COR, and the ends of the 95 % confidence interval of the mean COR. The interval is
     mean ± t s/√n with Student's t, clipped to [0, 1]. With one surface, s and the ends are NaN.
 
-    `errors` are the rows of one surface, with the errors due to grid and materials. The means get
-    the same errors. `surface_scatter` is half of the width of the confidence interval. If only one
-    surface reached a depth, the total error of this depth stays unknown.
+    `errors` are the rows of one surface. Their errors due to grid and materials are copied to the
+    rows of the means. `surface_scatter` is half of the width of the confidence interval. If only
+    one surface reached a depth, the total error of this depth stays unknown.
     """
     rows = []
     for depth in range(max(map(len, curves), default=0)):

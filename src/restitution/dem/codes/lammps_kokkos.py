@@ -38,12 +38,15 @@ class VelocityDamping:
         return 4 / 3 * self.pair.law.contact_modulus
 
     def restitution(self, share: float) -> float:
-        """Return the coefficient of restitution at `share` times the velocity of the export."""
+        """Return COR at `share` times the impact velocity for which the law is exported."""
         return hertz_restitution_at(self.pair.law, self.damping, share * self.pair.velocity)
 
 
 def velocity_damping(pair: Pair) -> VelocityDamping:
-    """Compute the damping that gives `pair` the e of its law at the velocity of the export."""
+    """Compute the damping of `pair` at the impact velocity for which the law is exported.
+
+    With this damping, LAMMPS gives the coefficient of restitution of the law at this velocity.
+    """
     return VelocityDamping(pair, hertz_damping(pair.law, pair.velocity, pair.restitution))
 
 
