@@ -160,8 +160,8 @@ def distinct(minima: Sequence[Minimum]) -> list[Minimum]:
 
     The first of `minima` is always kept. Another minimum is kept if it meets two conditions. It
     must differ by more than `DISTANCE` from all minima that are already kept. Its sum of squares
-    must be at most `_WORTH` times the smallest sum of squares. This smallest sum does not include
-    the first minimum, because the first minimum may come from a search at a different `Cost`.
+    must be at most `_WORTH` times the smallest sum of squares of all minima except the first. The
+    first minimum may come from a search at a different `Cost`, so its sum is not comparable.
     """
     first, *others = minima
     least = min((other.squares for other in others), default=0.0)

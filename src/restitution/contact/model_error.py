@@ -96,9 +96,9 @@ def _plasticity_error(state: State, restitution: float) -> float:
     stored, lost = state.stored_energy, state.plastic_work
     returned = stored / (stored + lost) if stored + lost > 0 else 0.0
     error = largest_difference(state, math.sqrt(returned))
-    # An error of the COR due to plasticity alone changes only the plastic loss of energy. The
-    # adhesive loss stays the same, so the square of the whole COR changes by the same amount as the
-    # square of the COR due to plasticity alone.
+    # The error of the model of plasticity changes only the plastic loss of energy, and the adhesive
+    # loss stays the same. Let e_p be the COR that the plastic loss alone would give. The square of
+    # the actual COR then changes by the same amount as e_p².
     high, low = (
         math.sqrt(max(restitution**2 + returned * ((1 + off) ** 2 - 1), 0.0))
         for off in (error, -error)

@@ -117,8 +117,8 @@ def _add_errors(
 ) -> None:
     """Add the errors due to surface and materials to the rows of the finest grid.
 
-    Three more values are added. `errors_known` says whether all of these errors could be computed.
-    `_with_grid_errors` uses `unseen_yield` and `octaves` (see `error_budget`) for the
+    Each row also gets `errors_known`, which says whether all of these errors could be computed, and
+    `unseen_yield` and `octaves` (see `error_budget`), from which `_with_grid_errors` computes the
     discretisation error. Rows whose loading work is not positive stay unchanged.
     """
     reached = [row for row in runs[max(runs)][1] if row["loading_work_J"] > 0]

@@ -214,7 +214,7 @@ def add_errors(
 ) -> list[float]:
     """Add the errors due to grid, surface and materials, and their total, to the rows of a run.
 
-    `surface` is the surface of the deepest depth. If `scattered` is false, the scatter between
+    `surface` is the surface on the grid of the largest depth. If `scattered` is false, the scatter between
     surfaces is left out. A row whose loading work is not positive stays unchanged, because the
     depth of this row cannot be the maximum indentation of an impact. The total error of a row is
     set only if all of its parts are known. Returns the errors due to waves that the grid leaves
@@ -332,7 +332,7 @@ def steps(case: Case) -> int:
 
 
 def _floor(row: Row) -> float:
-    """Minimum s f of the discretisation error of a row (s and f: see the top of this file)."""
+    """Minimum discretisation error of a row: the product of s and f (see the top of this file)."""
     nodes = max(row["median_patch_nodes"], 1.0)
     expected = math.exp(np.interp(math.log(nodes), np.log(_PATCH_NODES), np.log(_PATCH_ERROR)))
     if resolves(nodes) and row["adhesion_resolved"]:
