@@ -214,10 +214,10 @@ def add_errors(
 ) -> list[float]:
     """Add the errors due to grid, surface and materials, and their total, to the rows of a run.
 
-    `surface` is the surface on the grid of the largest depth. If `scattered` is false, the scatter between
-    surfaces is left out. A row whose loading work is not positive stays unchanged, because the
-    depth of this row cannot be the maximum indentation of an impact. The total error of a row is
-    set only if all of its parts are known. Returns the errors due to waves that the grid leaves
+    `surface` is the surface on the grid of the largest depth. If `scattered` is false, the scatter
+    between surfaces is left out. A row whose loading work is not positive stays unchanged, because
+    the depth of this row cannot be the maximum indentation of an impact. The total error of a row
+    is set only if all of its parts are known. Returns the errors due to waves that the grid leaves
     out, one for each row with a positive loading work.
     """
     band: list[float] = []
