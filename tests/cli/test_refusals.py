@@ -69,6 +69,7 @@ def refused_case(refused, case_text, tmp_path):
         ("[72, 64]", "1" * 5000, "case.toml", "a number with thousands of digits; correct it"),
         ("seed = 1", f"seed = {2**63}", "roughness.seed", "less than"),
         ("seed = 1", 'seed = 1\n"a\\nb" = 2', "roughness.a\\nb", "unknown key"),
+        ("seed = 1", 'seed = 1\nsecond = "steel"', "roughness.second", "above the first [table]"),
         ("ratio = 0.25", 'ratio = "0.25"', "first.poissons_ratio", '"0.25" should be a number'),
         ("ratio = 0.25", "ratio = true", "first.poissons_ratio", "true should be a number"),
         ('"500 um"', '"500 km"', "first.radius", "outside the plausible range (1e-12 to 1000 m)"),

@@ -1,6 +1,7 @@
 """What a case may ask of a scan: a part of it, without spikes, larger, added to others."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -91,8 +92,9 @@ def test_spikes_are_taken_out(surface, scan, tmp_path):
     spoiled = scan.copy()
     spoiled[40, 41] = 1e-6
     np.save(tmp_path / "scan.npy", spoiled)
-    found, _ = surface("outliers = 8")
+    found, printed = surface("outliers = 8")
     assert found["provenance"]["outliers"] == 1
+    assert "scan.npy: 1 outlier replaced" in printed
     assert found["Sz_m"] < 2e-7
 
 
@@ -113,6 +115,15 @@ def test_twins_make_an_ensemble(cli, case, tmp_path):
     assert status == 0
     assert "2 depths of 2 curves" in said
     assert (tmp_path / "out" / "realisation-2" / "curve.csv").exists()
+
+
+def test_the_channel_and_the_other_height_channels_are_named(surface, topographies):
+    pytest.importorskip("SurfaceTopography")
+    file = (topographies / "di-3.di").as_posix()
+    tables = SCAN.format(more="", grid="").replace("scan.npy", file)
+    _, printed = surface(tables=re.sub("size = .*", "", tables))
+    words = "those of channel 0 ('ZSensor'); roughness.channel selects another height channel: 3"
+    assert words in " ".join(printed.split())
 
 
 def test_mirrored_tiles_are_labelled(cli, case):

@@ -68,6 +68,30 @@ def test_run_writes_every_file(done):
         assert name in said
 
 
+@pytest.mark.parametrize(
+    ("more", "change", "words"),
+    [
+        ("", ('"2 um"', '"0.6 um"'), "discretisation_error: `restitution converge` computes COR"),
+        ("realisations = 2\n", None, "surface_scatter: a larger number of realisations"),
+        ("", ("seed = 1", "seed = 4"), "surface_scatter: `restitution run` with realisations = 8"),
+    ],
+)
+def test_run_names_the_largest_part_of_a_large_error(cli, case_text, tmp_path, more, change, words):
+    text = case_text.replace("seed = 1\n", f"seed = 1\n{more}").replace(*change or ("", ""))
+    (tmp_path / "case.toml").write_text(text)
+    status, said, _ = cli("run", tmp_path / "case.toml", "-o", tmp_path / "out")
+    assert status == 0
+    assert f"The largest part of the total error is {words}" in " ".join(said.split())
+
+
+def test_run_gives_no_advice_if_the_error_is_small(cli, case_text, tmp_path):
+    smooth = case_text[: case_text.index("[roughness]")] + case_text[case_text.index("[grid]") :]
+    (tmp_path / "case.toml").write_text(smooth)
+    status, said, _ = cli("run", tmp_path / "case.toml", "-o", tmp_path / "out")
+    assert status == 0
+    assert "largest part" not in said
+
+
 def test_run_writes_the_curve(done):
     names, rows = rows_of(done[0] / "curve.csv")
     assert names == COLUMNS

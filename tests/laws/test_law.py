@@ -86,7 +86,7 @@ def test_the_points_are_those_of_the_run(rough):
     said = law.conventions.model_dump()
     error = said.pop("restitution_error")
     assert error.startswith(
-        "solver, grid, difference of this surface from the mean of 8; not: the model"
+        "solver, grid, difference of this surface from the mean of 8 surfaces; not: the model"
     )
     assert said == summary["conventions"]
 

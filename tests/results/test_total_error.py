@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from restitution.results.total_error import total
+from restitution.results.total_error import largest_part, total
 from tolerance import approx
 
 PARTS = {
@@ -33,3 +33,13 @@ def test_a_part_that_is_not_known_is_left_out(name):
 def test_it_is_at_most_the_distance_to_the_farther_end(e, most):
     assert total({"restitution": e, "restitution_error": 0.9}) == most
     assert total({"restitution": e, "restitution_error": 0.2}) == 0.2
+
+
+@pytest.mark.parametrize("name", PARTS)
+def test_the_largest_part_is_that_of_all_rows_with_a_total_error(name):
+    many = {**dict.fromkeys(PARTS, 0.01), name: 0.012, "total_error": 0.02}
+    other = "surface_scatter" if name != "surface_scatter" else "material_error"
+    one = {**dict.fromkeys(PARTS, 0.01), other: 0.0121, "total_error": 0.02}
+    unknown = {**dict.fromkeys(PARTS, math.nan), other: 0.9, "total_error": math.nan}
+    assert largest_part([many, many, one, unknown]) == name
+    assert largest_part([{**one, name: math.nan}, one]) == other

@@ -61,7 +61,7 @@ def test_every_row_of_a_run_has_a_total_of_its_parts(case_text, tmp_path):
         each["total_error"] for each in rows
     )
     assert (
-        "difference of this surface from the mean of 8"
+        "difference of this surface from the mean of 8 surfaces"
         in summary["diagnostics"]["total_error_includes"]
     )
     assert (

@@ -303,13 +303,16 @@ def test_size_is_needed_where_the_file_has_none(fake_file, refusal):
 def test_default_channel_that_is_no_height_map_is_passed_over(fake_file):
     phase = fake_channel("Phase", data_unit="deg", is_height_channel=False)
     path, _ = fake_file(phase, fake_channel("z"))
-    assert read_surface(path).provenance["channel_name"] == "z"
+    provenance = read_surface(path).provenance
+    assert provenance["channel_name"] == "z"
+    assert "other_height_channels" not in provenance
 
 
 def test_default_channel_is_the_readers(fake_file):
     path, _ = fake_file(fake_channel("trace"), fake_channel("retrace"), default=1)
     provenance = read_surface(path).provenance
     assert (provenance["channel"], provenance["channel_name"]) == (1, "retrace")
+    assert provenance["other_height_channels"] == "0 ('trace')"
 
 
 @pytest.mark.parametrize(

@@ -190,6 +190,8 @@ def _in_words(problem: Any, root: type[Table]) -> str:
     if kind == "extra_forbidden":
         known = _keys_of(keys[:-1], problem["loc"], root)
         hint = f"known keys: {', '.join(known)}" if known else "remove it"
+        if len(keys) > 1 and keys[-1] in root.model_fields:
+            return f"{key}: unknown key; write {keys[-1]} above the first [table] of the file"
         return f"{key}: unknown key; {did_you_mean(keys[-1], known) or hint}"
     if kind == "missing":
         what = f"the table [{key}]" if len(keys) == 1 else f'the key "{key}"'

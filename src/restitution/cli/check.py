@@ -18,7 +18,7 @@ _LABELS = {
     "contact_modulus_Pa": ("contact modulus E*", 1e-9, "GPa"),
     "reduced_mass_kg": ("reduced mass m*", 1, "kg"),
     "yield_strength_Pa": ("yield strength Y", 1e-6, "MPa"),
-    "yield_pressure_Pa": ("yield pressure p_y (hardness, ~2.8 Y)", 1e-6, "MPa"),
+    "yield_pressure_Pa": ("yield pressure p_y", 1e-6, "MPa"),
     "yield_indentation_m": ("yield indentation δ_y, smooth", 1e9, "nm"),
     "yield_force_N": ("yield force F_y, smooth", 1, "N"),
     "yield_velocity_m_per_s": ("yield velocity V_y, smooth", 1, "m/s"),

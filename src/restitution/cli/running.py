@@ -17,6 +17,15 @@ if TYPE_CHECKING:
     from restitution.results.writer import ResultsFolder
 
 
+# Total error of COR from which the largest part of the error and its remedy are printed.
+_LARGE = 0.05
+_REMEDIES = {
+    "restitution_error": "a smaller unloading.restitution_error reduces it",
+    "discretisation_error": "`restitution converge` computes COR on finer grids",
+    "material_error": "give measured properties instead of those of the material library",
+}
+
+
 def run_with_progress(
     context: typer.Context,
     case: Path,
@@ -79,6 +88,8 @@ def run_with_progress(
             f"{summary['seconds']:.1f} s; largest residual {residual:.1e}",
             markup=False,
         )
+        if advice := _advice(read, folder.rows):
+            say(advice)
         drawn = {path.name for path in _draw(out, figures)}
     except KeyboardInterrupt:
         errors.print("Interrupted.", style="red")
@@ -94,6 +105,27 @@ def run_with_progress(
     if not read.periodic:
         say_next(command("report", out))
     return summary
+
+
+def _advice(case: Case, rows: list[dict[str, float]]) -> str:
+    """Name the largest part of a large total error and its remedy; empty if the error is small."""
+    largest = max((row["total_error"] for row in rows if row["total_error"] > 0), default=0.0)
+    if case.periodic or largest < _LARGE:
+        return ""
+    from restitution.results.total_error import largest_part
+
+    part = largest_part(rows)
+    if part == "surface_scatter":
+        n = case.realisations
+        remedy = (
+            "a larger number of realisations in [roughness] reduces it"
+            if n > 1
+            else "`restitution run` with realisations = 8 in [roughness] computes the mean of 8 "
+            "surfaces"
+        )
+    else:
+        remedy = _REMEDIES[part]
+    return f"The largest part of the total error is {part}: {remedy}."
 
 
 def _draw_partial_results(folder: ResultsFolder, depths: int, figures: FigureFormat) -> None:

@@ -1,10 +1,12 @@
 """`restitution surface`: describe the generated or measured surface of a case."""
 
+from collections.abc import Iterator
+
 import typer
 from rich.table import Table
 
 from restitution.cli.parameters import CaseFile, FigureFormat, Figures, OutFolder
-from restitution.display import quantity
+from restitution.display import counted, quantity
 
 
 def surface(
@@ -56,14 +58,30 @@ def surface(
     for key, value in statistics.items():
         table.add_row(key, "-" if value is None else f"{value:.5g}")
     answers.print(table)
-    for key, radius in provenance.items():
-        if key.endswith("subtracted_radius_m"):
-            file = provenance[key.replace("subtracted_radius_m", "file")]
-            say(_curvature(str(file), float(radius)))
+    for line in _about_scans(provenance):
+        say(line)
     if "notice" in provenance:
         warn(str(provenance["notice"]))
     say_written(out, ["surface.nc", "statistics.json", picture.name, "surface.html"])
     say_next(command("run", case, "-o", "OUT"))
+
+
+def _about_scans(provenance: dict[str, str | float]) -> Iterator[str]:
+    """Yield what reading and cleaning found in each scan: channel, outliers and curvature."""
+    for key, file in provenance.items():
+        before = key.removesuffix("file")  # "", or "part_1_" in a composite surface
+        if before == key:
+            continue
+        if others := provenance.get(f"{before}other_height_channels"):
+            number, name = (provenance[f"{before}{key}"] for key in ("channel", "channel_name"))
+            yield (
+                f"{file}: the heights are those of channel {number} ('{name}'); roughness.channel "
+                f"selects another height channel: {others}"
+            )
+        if count := provenance.get(f"{before}outliers"):
+            yield f"{file}: {counted(int(count), 'outlier')} replaced"
+        if radius := provenance.get(f"{before}subtracted_radius_m"):
+            yield _curvature(str(file), float(radius))
 
 
 def _curvature(file: str, radius: float) -> str:

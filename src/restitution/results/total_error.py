@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+
+PARTS = ("restitution_error", "discretisation_error", "surface_scatter", "material_error")
 
 
 def total(row: Mapping[str, float]) -> float:
@@ -11,6 +13,16 @@ def total(row: Mapping[str, float]) -> float:
 
     COR lies between 0 and 1, so its error cannot exceed the larger of COR and 1 − COR.
     """
-    parts = ("restitution_error", "discretisation_error", "surface_scatter", "material_error")
-    known = [error for name in parts if not math.isnan(error := row.get(name, math.nan))]
+    known = [error for name in PARTS if not math.isnan(error := row.get(name, math.nan))]
     return min(math.hypot(*known), max(row["restitution"], 1 - row["restitution"]))
+
+
+def largest_part(rows: Sequence[Mapping[str, float]]) -> str:
+    """Name of the part with the largest root mean square over the rows with a total error."""
+    known = [row for row in rows if not math.isnan(row["total_error"])]
+
+    def squares(name: str) -> float:
+        errors = (row.get(name, math.nan) for row in known)
+        return sum(error**2 for error in errors if not math.isnan(error))
+
+    return max(PARTS, key=squares)

@@ -302,7 +302,7 @@ def interrupted_errors(case: Case, rows: Sequence[Row], status: str) -> Iterator
     if case.total_error and status == "interrupted" and missing:
         yield (
             f"total_error is missing at {missing} of {counted(len(rows), 'depth')}, because the "
-            "run was stopped before it was computed; run the case again"
+            "run was stopped before it was computed; run the case again into a new folder"
         )
 
 
@@ -316,7 +316,7 @@ def included(case: Case) -> list[str]:
         words.append(
             f"95 % interval of the mean of {n} surfaces"
             if n > 1
-            else f"difference of this surface from the mean of {SURFACES + 1}"
+            else f"difference of this surface from the mean of {SURFACES + 1} surfaces"
         )
     if case.has_library_values():
         words.append("spread of the library's materials")

@@ -130,6 +130,7 @@ def _read_channel(path: Path, reader: Any, channel: int | None) -> Scan:
     topography = chosen.topography(physical_sizes=None if sized else chosen.nb_grid_pts)
     x, y = (in_metres(float(side), topography.unit) for side in topography.physical_sizes)
     heights = topography.to_unit("m").heights()
+    others = [each for each in channels if each is not chosen and _is_height(each)]
     return Scan(
         # Fill masked (undefined) pixels with NaN. NumPy's default value would look like a height.
         np.ma.filled(np.ma.asarray(heights, dtype=np.float64), np.nan),
@@ -139,6 +140,7 @@ def _read_channel(path: Path, reader: Any, channel: int | None) -> Scan:
             **Y_DOWN,
             "channel": index,
             "channel_name": str(chosen.name),
+            **({"other_height_channels": _list(others, channels)} if others else {}),
             "file_unit": str(chosen.unit),
         },
     )
