@@ -86,8 +86,8 @@ def remove_outliers(surface: Surface, threshold: float) -> Surface:
 
     Args:
         surface: Surface to clean.
-        threshold: Number of standard deviations (dimensionless). 6 to 10 removes dust, spikes and
-            slipped scan lines; smaller values also remove summits.
+        threshold: Number of standard deviations (dimensionless). 6 to 10 removes spikes, dust of up
+            to 3 x 3 pixels and single slipped scan lines; smaller values also remove summits.
 
     Returns:
         Surface without outliers.
