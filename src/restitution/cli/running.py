@@ -109,8 +109,7 @@ def run_with_progress(
 
 def _advice(case: Case, rows: list[dict[str, float]]) -> str:
     """Name the largest part of a large total error and its remedy; empty if the error is small."""
-    largest = max((row["total_error"] for row in rows if row["total_error"] > 0), default=0.0)
-    if case.periodic or largest < _LARGE:
+    if case.periodic or not any(row["total_error"] >= _LARGE for row in rows):
         return ""
     from restitution.results.total_error import largest_part
 
