@@ -53,8 +53,8 @@ in a process of its own.
   with scipy.fft, two workers and float64. The convolution is timed just before the solution.
 * least: the shortest time of these solutions.
 * first: the time of the first solution in the process. During this solution the process accesses
-  its memory for the first time. This machine is virtual, and its host reclaims idle memory. On such
-  a machine the first access can take any program 1 to 2 s per GiB.
+  its memory for the first time. This machine is virtual, and its host reclaims idle memory. In any
+  program on such a machine, the first access can take 1 to 2 s per GiB.
 * memory: the peak memory of the process, including Python and the surface, in GiB.
 * arrays per node: the peak memory, divided by the memory of one float64 array of the whole grid.
 

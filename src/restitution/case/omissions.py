@@ -57,7 +57,8 @@ def _no_adhesion(case: Case) -> str | None:
 def _lowest_velocity(case: Case, mass: float) -> float:
     """The lowest impact velocity (m/s) of the case.
 
-    If the case prescribes loads or indentations, the velocity is that of smooth elastic bodies.
+    If the case prescribes loads or indentations, the result is the impact velocity at which smooth
+    elastic bodies would reach the smallest load or indentation.
     """
     first, pair = case.depths()[0], case.pair()
     if case.impact is not None:

@@ -14,7 +14,7 @@ from restitution.contact.contact import Contact
 from restitution.contact.state import Array
 from restitution.theory import LennardJones
 
-# Ratio of the equilibrium separation to the gap where the attraction weakens most steeply.
+# The attraction weakens most steeply at the gap z₀/_SOFTEST (z₀ is the equilibrium separation).
 _SOFTEST = (2 / 15) ** (1 / 6)
 
 

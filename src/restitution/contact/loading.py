@@ -1,10 +1,14 @@
 """Load the undeformed bodies to one indentation, and compute the loading work.
 
 The state of monotonic loading under a pressure bound does not depend on the path, so one solve from
-the undeformed bodies is enough. The loading work is computed in one of three ways. Under a constant
-bound without adhesion, it is the elastic energy plus the bound times the plastic volume. With a
-truncated pressure or with adhesion on approach, it is the integral of the force over the
-indentation. Under a growing bound, the plastic work is summed over increments of the indentation.
+the undeformed bodies is enough. (Cohesive contacts follow the whole loading path.) The computation
+of the loading work depends on the models:
+
+* Constant pressure bound, no adhesion on approach: the loading work is the elastic energy plus the
+  bound times the plastic volume.
+* Plasticity `truncated`, or adhesion on approach: the force is integrated over the indentation.
+* Growing pressure bound (`expanding-cavity`): the plastic work is summed over increments of the
+  indentation.
 """
 
 from __future__ import annotations

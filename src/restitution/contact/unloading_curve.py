@@ -82,9 +82,10 @@ class UnloadingCurve:
 def unloading_curve(path: list[State]) -> UnloadingCurve:
     """Return the curve of a `path` from `separate`.
 
-    Each contact area gives one point, its balance (see the top of this file). If the balance is
-    unknown, or if the contact area has fewer than `_FEW_NODES` nodes, all states with this area are
-    used instead. On a grid where balances are not reliable, the points are all states of the path.
+    Each contact area gives one point of the curve: the balance of this area (see the top of this
+    file). If the balance is unknown, or if the contact area has fewer than `_FEW_NODES` nodes, all
+    states with this area are used instead. All states of the path are used if no balance is known,
+    or if the grid is too coarse for reliable balances.
     """
     states = [(state.indentation, state.force) for state in path]
     balances = [state.balance for state in path[1:]]

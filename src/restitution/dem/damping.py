@@ -108,7 +108,10 @@ def hertz_restitution(damping: float) -> float:
 
 
 def hertz_damping(law: Law, velocity: float, restitution: float) -> float:
-    """Return the damping coefficient γ (kg/s) of a Hertz contact that has e at `velocity` (m/s)."""
+    """Return the damping coefficient γ (kg/s) that gives a Hertz contact the COR `restitution`.
+
+    `velocity` is the impact velocity (m/s).
+    """
     g = _root(hertz_restitution, restitution, 2.0)
     return g * law.mass * velocity / _length(law, velocity)
 

@@ -1,4 +1,4 @@
-"""The figures of the page, as JSON for the plotting library."""
+"""The figures on the page of `restitution app`, as JSON for Plotly."""
 
 from __future__ import annotations
 

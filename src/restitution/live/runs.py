@@ -1,4 +1,7 @@
-"""Complete runs for the page; each writes the same files as `restitution run`."""
+"""Complete runs and convergence studies for the page of `restitution app`.
+
+They write the same files as `restitution run` and `restitution converge`, but no figures.
+"""
 
 from __future__ import annotations
 

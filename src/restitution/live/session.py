@@ -44,7 +44,7 @@ class Session:
         return next(each for each in free if not (self.scans / each).exists())
 
     def close(self) -> None:
-        """Remove the folders with everything in them."""
+        """Remove the temporary folder with everything in it."""
         shutil.rmtree(self.room, ignore_errors=True)
 
 

@@ -1,4 +1,4 @@
-"""Diffusion on a graph of nodes."""
+"""Diffusion on a graph: each node repeatedly takes a weighted sum of its neighbours' values."""
 
 from __future__ import annotations
 

@@ -71,7 +71,7 @@ def run_periodic(
 
 
 def _edges_of_scans(case: Case) -> list[str]:
-    """Return a warning for each scan without `extend`: its opposite edges do not match."""
+    """Return a warning for each scan without `extend`, because its opposite edges do not match."""
     return [
         f"roughness.file: the opposite edges of {part.file} do not match, so the surface has steps "
         'along the edges of the grid; set roughness.extend = "twin" for a periodic surface with '

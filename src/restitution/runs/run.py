@@ -145,7 +145,7 @@ def _write_results(
     summary = _summarise(case, deepest.contact, out, run)
     summary["seconds"] = run.seconds
     dataset = results_dataset(out, deepest)
-    with suppress(RestitutionError):  # the smooth curve is optional
+    with suppress(RestitutionError):  # if the smooth curve fails, the results omit it
         dataset = dataset.assign(smooth_curve(deepest.contact, out.rows))
     dataset.attrs = status_attributes(summary) | case_attributes(summary, text)
     out.write(dataset, summary)

@@ -33,10 +33,9 @@ def composite(surfaces: Sequence[Surface]) -> Surface:
     them first.
 
     The provenance of the sum contains the provenance of each part, with the prefixes `part_1_`,
-    `part_2_`, … As for a single scan, it also states the files, the direction in which maps show y,
-    and the pixel size (of the part with the largest pixels). It states whether all parts are
-    periodic. For resampled parts, it states the rms height of the removed waves and
-    an upper bound of their relative rms slope.
+    `part_2_`, … For scans, it also states the files, the direction in which maps show y, and the
+    largest pixel size of the parts. It states whether all parts are periodic. For resampled parts,
+    it states the rms height of the removed waves and an upper bound of their relative rms slope.
 
     Args:
         surfaces: Surfaces on the same grid.

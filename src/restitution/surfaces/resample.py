@@ -156,7 +156,10 @@ def _carried(height: Array, ratio: float) -> Array:
 
 
 def _carried_mirrored(height: Array, ratio: float) -> Array:
-    """Remove short waves like `_carried`, but continue the heights by their mirror image."""
+    """Remove waves shorter than 2/ratio pixels along the first axis, as `_carried` does.
+
+    Here the heights are continued by their mirror image, without subtracting a line.
+    """
     from scipy.fft import dct, idct
 
     modes = dct(height, type=2, axis=0)  # cosine k has a wavelength of 2n/k pixels
