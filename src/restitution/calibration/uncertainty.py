@@ -59,10 +59,11 @@ class Deviations:
 
     @property
     def by_surface(self) -> Array:
-        """The field `surfaces`, scaled to describe means over n surfaces, shape (surfaces, points).
+        """The field `surfaces`, scaled to the scatter of means, shape (surfaces, points).
 
-        The sum of the outer products of the rows is the covariance of the difference between two
-        means of COR, each over n surfaces. This covariance is 2/n times that of single surfaces.
+        Let n be the number of surfaces. The sum of the outer products of the rows is 2/n times the
+        covariance of the COR of single surfaces. This is the covariance of the difference between
+        two means of COR, each over n surfaces.
         """
         n = len(self.surfaces)
         return self.surfaces * math.sqrt(2 / (n * max(n - 1, 1)))
@@ -99,7 +100,8 @@ class Uncertainty:
         """Compute the uncertainty.
 
         `jacobian` is ∂COR/∂x at the measured points, with x = ln(value/first guess) for each
-        parameter. `weights` are the standard deviations by which residuals are divided.
+        parameter. `weights` are the standard deviations σ of the points. In the fit, each residual
+        is divided by its σ.
         """
         scaled = jacobian / weights[:, None]
         U, s, Vt = np.linalg.svd(scaled, full_matrices=False)

@@ -174,7 +174,7 @@ def _keys(problem: Any) -> list[str]:
 
 
 def _key_of(problem: Any) -> str:
-    """The dotted key; "roughness[2]" is the second table [[roughness]]."""
+    """Dotted key of a pydantic error; "roughness[2]" is the second table [[roughness]]."""
     names = [shown(key)[1:-1] for key in _keys(problem)]
     number = problem["loc"][1] if names[:1] == ["roughness"] and len(problem["loc"]) > 1 else 0
     if isinstance(number, int) and number > 0:

@@ -89,9 +89,10 @@ class GridTable(Table):
 
     @property
     def factor(self) -> int:
-        """Refinement factor at the deepest depth; 1 for "auto".
+        """Refinement factor of the grid; 1 for "auto".
 
-        The factor is the number of parts into which a cell is divided along each axis.
+        The factor is the number of parts into which a cell is divided along each axis. If `refine`
+        contains a factor for each depth, the factor of the deepest depth is returned.
         """
         if isinstance(self.refine, tuple):
             return self.refine[-1]

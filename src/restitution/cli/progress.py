@@ -60,4 +60,5 @@ def cases_progress(cases: int | None, out: object, resume: str) -> Iterator[Prog
     except KeyboardInterrupt:
         errors.print("Interrupted.", style="red")
         say(f"Completed cases are kept; to resume: {resume}", errors)
-        raise typer.Exit(130) from None  # 130: Ctrl-C; `main` replaces it after other signals
+        # Exit status of Ctrl-C. After another signal, `main` exits with the status of that signal.
+        raise typer.Exit(130) from None

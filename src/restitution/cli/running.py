@@ -94,7 +94,8 @@ def run_with_progress(
     except KeyboardInterrupt:
         errors.print("Interrupted.", style="red")
         _draw_partial_results(folder, depths, figures)
-        raise typer.Exit(130) from None  # 130: Ctrl-C; `main` replaces it after other signals
+        # Exit status of Ctrl-C. After another signal, `main` exits with the status of that signal.
+        raise typer.Exit(130) from None
     except BaseException:
         if received:
             errors.print("Interrupted.", style="red")

@@ -51,8 +51,8 @@ from restitution.numerics.truncated_newton import minimise_locally
 COARSEST = 0.3
 COMPANION = "companion"  # provenance key of a surface that only serves to compare grids
 
-# A solve includes all nodes at which the attraction matters. There, the gap between the rigid
-# bodies is below about this multiple of z₀ plus the length scale of adhesion.
+# A solve includes all nodes at which the attraction matters. At these nodes the gap before elastic
+# deformation is below about _REACH z₀ + L, where L is `Contact.adhesive_length`.
 _REACH = 12.0
 # The tolerance of the displacement is z₀ times the `residual` of a solve times _TOLERANCE. Because
 # of rounding, it is at least z₀ times _LEAST_TOLERANCE.
@@ -97,7 +97,7 @@ class CohesiveState(State):
 
     @property
     def mean_gap(self) -> float:
-        """Mean gap (m) of a periodic contact. It is z₀ if flat surfaces exert no force."""
+        """Mean gap (m) of a periodic contact. For flat surfaces at zero force it is z₀."""
         return super().mean_gap + self.contact.equilibrium_separation
 
     @property

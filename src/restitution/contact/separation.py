@@ -177,7 +177,7 @@ def _unload(
 
 
 def separation_of(path: list[State]) -> Separation:
-    """Compute the result of a `path` of states from `separate`."""
+    """Compute energies, error and pull-off force of the unloading along the states of `path`."""
     depth = np.array([state.indentation for state in path])
     force = np.array([state.force for state in path])
     start, end = path[0], path[-1]

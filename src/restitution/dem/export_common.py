@@ -233,7 +233,7 @@ def number(value: float) -> str:
 
 
 def program_version() -> str:
-    """The version of this program."""
+    """Return the installed version of this package, or "(version unknown)"."""
     try:
         return version("restitution")
     except PackageNotFoundError:  # the program is not installed

@@ -196,7 +196,7 @@ def _component(key: str, name: str, table: Any) -> Component:
         if sizes not in (None, "flat"):
             raise CaseError(f"{key}.radius: a wall is flat; remove this key")
     elif sizes is None:
-        raise CaseError(f"{key}.radius: is missing; give one or more radii, or bins")
+        raise CaseError(f"{key}.radius: is missing; give one or more radii, or size bins")
     else:
         radii = _radii(key, sizes)
     fractions = number_fractions(key, body, sizes, radii)

@@ -76,8 +76,9 @@ def minimise_locally(
     """Descend from (p, u) to a local minimum of ½ uᵀK⁻¹u + Σ φ(u), where `potential` returns φ.
 
     `p` and `u` = K p are the start and are not changed. `length` is the change of u over which φ″
-    changes noticeably. As long as there is no trust region, it limits steps along a direction of
-    negative curvature.
+    changes noticeably. The method starts without a trust region. Until it has one, `length` limits
+    the change of u along a direction of negative curvature.
+
     `tolerance` limits `LocalMinimum.residual`. `zero_mean` states that K maps constant arrays to
     zero and is positive definite for arrays of mean zero. If the method does not converge,
     `converged` of the result is False; no exception is raised.

@@ -161,9 +161,10 @@ def _levels(case: Case, folder: Path, grids: int) -> dict[int, float]:
 
 
 def _pressed_less(case: Case, later: float) -> Case:
-    """Reduce the indentations of `case` by `later` (m), the extra approach to first touch.
+    """Reduce the indentations of `case` by `later` (m), so that all grids have the same approach.
 
-    Indentations without contact are left out.
+    `later` is the extra approach to first touch, compared with the finest grid. Indentations that
+    do not exceed `later` are left out, because the bodies do not touch there.
     """
     if case.indentation is None:
         return case  # loads and velocities do not depend on where a grid touches first
