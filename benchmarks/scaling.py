@@ -36,7 +36,8 @@ REPEAT_SECONDS, FEWEST, MOST = 3.0, 5, 25  # time for which a solve is repeated,
 REPORT = """\
 # Time and memory against size
 
-{date}, {machine}. Written by `make bench`; all columns are in [scaling.csv](scaling.csv).
+{date}, {machine}. Written by `make bench`.
+All columns are in [scaling.csv](scaling.csv).
 
 This page shows how time and memory grow with the size of the grid. Each row is one contact of a
 sphere (R* = 250 µm, E* = 112 GPa), solved with a tolerance of 1e-8. All rows have the same rough

@@ -36,7 +36,7 @@ def measure_unit(n: int, *, samples: int = 5) -> float:
 
 
 def machine() -> str:
-    """Processor, number of cores and load; the times are reliable only at a low load."""
+    """Processor, number of cores and load average; times are reliable only at a low load."""
     model = platform.processor() or platform.machine()
     cpuinfo = Path("/proc/cpuinfo")
     if cpuinfo.exists():
@@ -46,7 +46,7 @@ def machine() -> str:
             if line.startswith("model name")
         ]
         model = models[0].strip() if models else model
-    return f"{model}, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f} at the start"
+    return f"{model}, {os.cpu_count()} cores, load average {os.getloadavg()[0]:.1f} at the start"
 
 
 def today() -> str:

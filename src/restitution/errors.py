@@ -59,7 +59,7 @@ def one_line(text: str) -> str:
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """Ask about the most similar word of `known`; return "" if no word is similar."""
+    """Return a question that suggests the most similar word of `known`; "" if none is similar."""
     near = difflib.get_close_matches(word, list(known), n=1)
     return f'did you mean "{near[0]}"?' if near else ""
 

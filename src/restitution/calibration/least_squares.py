@@ -48,7 +48,7 @@ class Data:
 
 @dataclass(frozen=True)
 class Minimum:
-    """The end of a search.
+    """The parameters at which a search ended, and their sum of squares.
 
     `x` holds ln(value/first guess) of each parameter, and `squares` is the sum of squared weighted
     residuals.

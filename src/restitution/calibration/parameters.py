@@ -52,7 +52,10 @@ def with_factors(
     factors: Array,
     digits: int = 17,
 ) -> dict[str, Any]:
-    """Return the tables of a case with each parameter multiplied by its factor."""
+    """Return a copy of the tables of a case, with each first guess multiplied by its factor.
+
+    The products are rounded to `digits` significant digits.
+    """
     case = copy.deepcopy(dict(content))
     for parameter, factor in zip(parameters, factors.tolist(), strict=True):
         put(case, parameter.key, parameter.scaled(factor, digits))

@@ -193,9 +193,9 @@ class Uncertainty:
 
     @cached_property
     def best_direction(self) -> Array:
-        """The linear combination of logarithms that the data determine best.
+        """The linear combination of the parameters' logarithms that the data determine best.
 
-        Returns the coefficients of the combination. The coefficient of largest magnitude is 1.
+        Returns its coefficients, one for each parameter. The coefficient of largest magnitude is 1.
         """
         direction = np.linalg.svd(self.scaled, full_matrices=False).Vh[0]
         return np.asarray(direction / direction[np.abs(direction).argmax()])

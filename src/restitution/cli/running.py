@@ -129,7 +129,7 @@ def _advice(case: Case, rows: list[dict[str, float]]) -> str:
 
 
 def _draw_partial_results(folder: ResultsFolder, depths: int, figures: FigureFormat) -> None:
-    """Print how many depths a run computed before it ended early, and draw them."""
+    """Print how many depths a run computed before it ended early, and draw its figures."""
     from contextlib import suppress
 
     from restitution.cli.console import errors, say

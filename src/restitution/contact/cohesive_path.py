@@ -88,7 +88,11 @@ def load_cohesive(
 def _move(
     state: CohesiveState, indentation: float, residual: float, accuracy: float = ACCURACY
 ) -> CohesiveState:
-    """Follow the path to `indentation`; return the last state, with all convolutions counted."""
+    """Follow the path from `state` to `indentation`, and return the last state.
+
+    Its `convolutions` are those of all steps of this path. `residual` is the tolerance of each
+    solve, and `accuracy` the tolerance of the energy balance of a step (see `ACCURACY`).
+    """
     end, convolutions = state, 0
     for end in follow(state, indentation, residual=residual, accuracy=accuracy):
         convolutions += end.convolutions

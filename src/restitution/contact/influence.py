@@ -164,7 +164,7 @@ def half_space(
 
     def kernel(i: NDArray[np.int64], j: NDArray[np.int64]) -> Array:
         # FreeConvolution works with transposed arrays: the lags i along x are a row, and the lags j
-        # along y are a column. Hence the exchange of arguments and spacings.
+        # along y are a column. Therefore i and j are exchanged here, and so are the spacings.
         return influence_coefficients(j, i, spacing[::-1], contact_modulus, device)
 
     return FreeConvolution(kernel, shape, device)

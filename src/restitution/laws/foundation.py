@@ -44,11 +44,12 @@ _POINTS = 400  # number of points of an unloading curve at which its slope is co
 
 @dataclass(frozen=True, eq=False)
 class Foundation:
-    """Springs of a contact that is loaded up to `depths[-1]` (m).
+    """The springs that replace a contact, for loading up to `depths[-1]` (m).
 
-    `radius` (m, shape (n,)) holds the distances of the springs from the middle, and `width` (m) is
-    their spacing. `loads` (N/m, shape (depths, n)) holds the normal loads per unit length at each
-    depth of loading, summed over the two sides of the middle. `moduli` are E* and G* (Pa).
+    `radius` (m, shape (n,)) holds the distances of the springs from the middle of the line, and
+    `width` (m) is their spacing. `loads` (N/m, shape (depths, n)) holds the normal load per unit
+    length of each spring at each depth of loading. The two springs at the same distance from the
+    middle count as one, so their loads are added. `moduli` are E* and G* (Pa).
     """
 
     radius: Array

@@ -67,7 +67,7 @@ _BALANCE = 0.01  # relative difference of unloading work and stored energy
 
 @dataclass
 class _Run(RunLog):
-    """The log of a run, with the values for its diagnostics."""
+    """The log of a run, with data of its depths for the warnings and the summary."""
 
     errors: bool = True  # whether the run computes the total error
     deepest: State | None = None

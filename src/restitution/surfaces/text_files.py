@@ -19,7 +19,7 @@ from restitution.surfaces.scan import Y_DOWN, Scan, in_metres
 
 TEXT_SUFFIXES = frozenset({".txt", ".csv", ".dat", ".asc"})
 
-_LEAST_VALUES = 4  # smallest number of values of a scan line; shorter lines may be coordinates
+_LEAST_VALUES = 4  # smallest number of heights of a scan line; fewer values may be coordinates
 _LONGEST = 200  # longer header values (in characters) are not read as a number with a unit
 _NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?"
 _QUANTITY = re.compile(rf"(?P<number>{_NUMBER})\s*(?P<unit>\S+)")

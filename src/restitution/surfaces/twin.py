@@ -7,11 +7,11 @@ adjustment depend on the scan, the period of the twin and the seed, but not on t
 with half the spacing gives the same surface with shorter waves added.
 
 To make the result independent of the grid, the waves are divided into bands by their wavelength.
-The adjustment proceeds from long to short waves:
+The target of each band is the distribution of heights that the scan has after all shorter waves are
+removed. The adjustment proceeds from long to short waves:
 
-* All waves of the first band are adjusted together, on the coarsest grid that resolves them. For
-  the target distribution of heights, the shorter waves are removed from the scan. The last step
-  adjusts the amplitudes, so the amplitudes are exact.
+* All waves of the first band are adjusted together, on the coarsest grid that resolves them. The
+  last step adjusts the amplitudes, so the amplitudes are exact.
 * Each further band adds waves down to half the shortest wavelength so far. Only the phases of the
   added waves are adjusted.
 * The bands end where the remaining waves have about 1 % of the scan's mean square height. These
@@ -227,7 +227,10 @@ def _copy(source: Modes, target: Modes, most: tuple[int, int]) -> None:
 
 
 def _heights(modes: Modes, nodes: tuple[int, int]) -> Array:
-    """Sum the waves. Their phases are relative to the origin of a `Grid` (node n // 2)."""
+    """Sum the waves `modes` to heights on a grid of `nodes`. Overwrites `modes`.
+
+    The phases are relative to the node (nx // 2, ny // 2), which is the origin of a `Grid`.
+    """
     from scipy.fft import irfft2
 
     number = np.fft.fftfreq(nodes[0], 1 / nodes[0]), np.arange(modes.shape[1])

@@ -151,8 +151,8 @@ class JKR(PositiveFields):
     def stored_energy_at_contact_radius(self, contact_radius: Values) -> Array:
         """Elastic energy at a contact radius, on the stable and the unstable branch.
 
-        The energy is that of two steps: Hertz loading to the contact radius a, then unloading by
-        δ′ = (2πwa/E*)^½ at fixed a with the stiffness 2E*a. The sum is
+        This state can be reached in two steps: Hertz loading to the contact radius a, then
+        unloading by δ′ = (2πwa/E*)^½ at fixed a with the stiffness 2E*a. The work of both steps is
         U_el = 8E*a⁵/(15R*²) − 4E*a³δ′/(3R*) + E*aδ′².
 
         Args:

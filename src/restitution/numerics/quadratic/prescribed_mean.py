@@ -63,9 +63,10 @@ class MeanTarget:
 
 @dataclass(frozen=True)
 class MeanSolution:
-    """The minimum, the multiplier D, the slope dD/dmean, and the number of products with K.
+    """The minimum at the prescribed mean, with its Lagrange multiplier D.
 
-    `products` counts only the products on the grid of the minimum, not those on coarser grids.
+    `slope` is dD/dmean. `products` is the number of products with the matrix K on the grid of the
+    minimum. It does not include products on coarser grids.
     """
 
     minimum: Minimum
