@@ -171,7 +171,10 @@ class Uncertainty:
         return [self.half(axis) for axis in np.eye(self.scaled.shape[1])]
 
     def deviation(self, part: str) -> Array:
-        """Standard deviation of the logarithm of each parameter due to one of the `parts`."""
+        """Standard deviation of the logarithm of each parameter due to one source of error.
+
+        `part` names the source: "noise", "surface" or "grid".
+        """
         return np.asarray(np.sqrt(np.diag(self.parts[part])))
 
     @cached_property

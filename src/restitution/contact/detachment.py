@@ -156,7 +156,7 @@ class Edge:
 
     @classmethod
     def of(cls, p: Array, u: Array, h: Array, touching: Mask) -> Edge:
-        """Find the edge from pressure p, displacement u and the gap h before displacement."""
+        """Find the edge from pressure p, elastic displacement u, and gap h at u = 0."""
         # `np.pad` would take 25 times as long on small contacts.
         T = np.zeros((touching.shape[0] + 2, touching.shape[1] + 2), dtype=bool)
         T[1:-1, 1:-1] = touching

@@ -129,12 +129,14 @@ def _newton_step(
 ) -> tuple[Array, Array, bool, bool]:
     """Solve (K⁻¹ + k) x = −r approximately, with the gradient r and k = φ″.
 
-    Returns x, K⁻¹x, whether a limit truncated the step, and whether the step met a direction of
-    negative curvature. The step x is a change of the unknowns u. `limits` are two numbers. The
-    first is the radius of the trust region in the norm (xᵀK⁻¹x)^½; it is infinite if there is no
-    trust region yet. A direction of negative curvature takes the step to the edge of the trust
-    region and ends it. If there is no trust region, the second number limits the change of u along
-    this direction.
+    The step x is a change of the unknowns u. `limits` contains two numbers. The first is the radius
+    of the trust region in the norm (xᵀK⁻¹x)^½; it is infinite if there is no trust region yet. The
+    iteration stops at the edge of the trust region, and it follows a direction of negative
+    curvature up to this edge. If there is no trust region, it follows such a direction until the
+    largest change of u along it equals the second number, and then stops.
+
+    Returns x, K⁻¹x, whether one of the limits ended the step, and whether the iteration met a
+    direction of negative curvature.
     """
     radius, length = limits
     x, Sx, Hd, scaled = (np.zeros_like(r) for _ in range(4))

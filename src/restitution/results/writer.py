@@ -331,7 +331,10 @@ def status_attributes(summary: Mapping[str, Any]) -> dict[str, str]:
 
 
 def case_attributes(summary: Mapping[str, Any], text: str) -> dict[str, str]:
-    """Return the attributes of `results.nc` about the case, whose file has the content `text`."""
+    """Return the attributes of `results.nc` that describe the case.
+
+    `text` is the text of the case file.
+    """
     groups = ("model", "conventions", "derived", "surface", "surface_statistics", "versions")
     entries = {
         f"{group}_{key}": str(value) for group in groups for key, value in summary[group].items()

@@ -52,7 +52,7 @@ _STANDSTILL = 0.05  # the adjustment ends if the misfit decreases by less than t
 # at most this many parts is used. A twin smaller than the scan is compared as a whole.
 _PARTS = 16
 _COMPARED = 2**23  # largest total number of nodes of these parts; a single part may have more
-_UNLIKE = 0.5  # above this misfit of the spectrum, the `notice` in the provenance has a warning
+_UNLIKE = 0.5  # above this misfit of the spectrum, the provenance's `notice` contains a warning
 
 # Probabilities of the quantiles that represent a distribution of heights, denser in the tails.
 _PROBABILITIES = 0.5 * (1 - np.cos(np.linspace(0, np.pi, 4097)))

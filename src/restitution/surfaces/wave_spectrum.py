@@ -36,11 +36,12 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class WaveSpectrum:
-    """Mean square heights of the waves (m, n) of a surface with edges `period` (m).
+    """Mean square heights of the waves of a twin.
 
-    Wave (m, n) has the wave vector 2π(m/Px, n/Py), where (Px, Py) is the `period`. `density` is the
-    spectrum of the scan, scaled to the mean square height (m²) of one wave of the twin. The zero
-    wave vector is in the middle of the array.
+    The edges of the twin are `period` = (Px, Py), in metres. The wave (m, n), with integers m and
+    n, has the wave vector 2π(m/Px, n/Py). `density` is the power spectrum of the scan, multiplied
+    by a constant. Its values are the mean square heights (m²) of single waves of the twin, before
+    the factor a + b/k² is applied. The zero wave vector is in the middle of the array.
     """
 
     density: Array

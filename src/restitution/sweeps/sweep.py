@@ -123,7 +123,8 @@ def _check_values(swept: Mapping[str, Any], mode: str) -> None:
 def put(case: dict[str, Any], path: str, value: Any) -> None:
     """Set the key at the dotted `path` to `value`.
 
-    A number in the path (from 1) selects one of several tables. Raises `CaseError`.
+    A number in the path selects one of several tables; the first table has the number 1. Raises
+    `CaseError` if the path does not lead to a key of one table.
     """
     table: Any = case
     *way, last = path.split(".")
