@@ -85,10 +85,27 @@ def curve_of(
     `tolerance` is the allowed error of COR due to the steps of adhesive unloading. A depth that
     cannot be solved is left out. The curve ends where the contact reaches the edge of the grid.
     """
+    return _curve_of([contact] * len(depths), depths, method, tolerance)
+
+
+def _curve_of(
+    contacts: Sequence[Contact],
+    depths: Sequence[float],
+    method: UnloadingMethod,
+    tolerance: float = _TOLERANCE,
+) -> Curve:
+    """Compute a curve as `curve_of` does, with one of `contacts` for each depth."""
     works: list[float] = []
     returned: list[float] = []
     back: list[State] = []
-    for depth in (_SHALLOWER * depths[0], *depths, _DEEPER * depths[-1]):
+    before = contacts[0]
+    for contact, depth in zip(
+        (contacts[0], *contacts, contacts[-1]),
+        (_SHALLOWER * depths[0], *depths, _DEEPER * depths[-1]),
+        strict=True,
+    ):
+        if contact != before:
+            before, back = contact, []
         try:
             (state,) = loading_path(contact, [depth])
             if contact.adhesive and method == "path":
@@ -125,11 +142,20 @@ class Companions:
         """Curve with the surface and the materials of the run, on cells twice as large."""
         return self._curve(self.coarse)
 
-    def weaker(self, factor: float) -> Curve:
-        """The curve of `coarse` with its yield pressure or strength multiplied by `factor`."""
+    def weaker(self, factors: Array) -> Curve:
+        """Curve as `own`, but with a lower yield pressure or yield strength.
+
+        The yield pressure or strength is multiplied by `factors`, one for each of the depths.
+        """
+        coarse = self.coarse
         keys = ("yield_pressure", "yield_strength")
-        lowered = replace(self.coarse, **{key: factor * getattr(self.coarse, key) for key in keys})
-        return self.own if lowered == self.coarse else self._curve(lowered)
+        lowered = [
+            replace(coarse, **{key: factor * getattr(coarse, key) for key in keys})
+            for factor in factors
+        ]
+        if all(contact == coarse for contact in lowered):
+            return self.own
+        return _curve_of(lowered, self.depths, self.case.unloading.method)
 
     def others(self, progress: Say = ignore) -> Iterator[Curve]:
         """Compute curves of other surfaces of the same kind (other seeds or places of the scan)."""

@@ -15,18 +15,25 @@ leaves out change ln S by n times as much as the shortest octave that the grid r
 assumes that these waves change COR by n ΔCOR. It multiplies n ΔCOR by a safety factor of 1.5. For
 generated surfaces n = 0 and S = S_h, because their definition includes the shortest wave.
 
-D is the change of COR on cells of size 2h if the yield pressure is multiplied by (S_2h/S)². Waves
-that a grid lacks raise the local pressure. Therefore, a contact may yield on a finer grid although
-it is elastic on cells of size h and 2h. ΔCOR then vanishes, and only D accounts for this yielding.
-q is the elastic energy stored in loading, divided by the sum of this energy and the plastic work.
-The factor q² reduces D if nodes already yield, because these nodes yield on a finer grid, too.
+D is the change of COR on cells of size 2h if the yield pressure is multiplied by p/p_S. Waves that
+a grid lacks raise the local pressure. Therefore, a contact may yield on a finer grid although it is
+elastic on cells of size h and 2h. ΔCOR then vanishes, and only D accounts for this yielding. p is
+the mean pressure in the contact area on cells of size h. p_S estimates this pressure with all
+waves:
+
+    p_S² = p² + (E*/2)² (S² − S_2h²).
+
+E* S/2 is the mean pressure in the contact area of an elastic rough surface with the rms slope S at
+small loads (S. Hyun et al., Phys. Rev. E 70 (2004) 026117). p_S/p is at most (S/S_2h)². q is the
+elastic energy stored in loading, divided by the sum of this energy and the plastic work. The factor
+q² reduces D if nodes already yield, because these nodes yield on a finer grid, too.
 
 f is the usual error of COR for the number of nodes in the median patch. Half of the contact nodes
 lie in patches of at least the size of the median patch (docs/resolution.md). s is the fraction of f
-that is added. s is large if the grid does not resolve the contact. Otherwise s is small, and its
+that is added. s is large if the median patch has only a few nodes. Otherwise s is small, and its
 only purpose is to keep the error from vanishing by chance.
 
-The constants of these formulas were chosen on about 400 random cases, 30 of them adhesive, and
+The constants of these formulas were chosen on about 1000 random cases, 30 of them adhesive, and
 checked on other cases (docs/error.md).
 """
 
@@ -40,7 +47,6 @@ from pathlib import Path
 import numpy as np
 
 from restitution.case.case import Case
-from restitution.contact.checks.resolution import resolves
 from restitution.display import counted
 from restitution.results.total_error import total
 from restitution.runs.companions import SURFACES, Array, Companions
@@ -52,14 +58,9 @@ Row = dict[str, float]
 
 # Safety factor on the change of COR that the waves left out by the grid are expected to cause.
 _BAND = 1.5
-# Exponent of S_2h/S in the term D (see the top of this file). It exceeds 1 because the largest
-# pressures rise more than the rms slope.
-_PEAKS = 2
-
-# The fraction s (see the top of this file) for resolved and for unresolved contacts. For unresolved
-# contacts, s is interpolated between its values at 3 and at 7 nodes in the median patch.
-_SHARE_RESOLVED = 0.03
-_FEW_NODES, _SHARE_UNRESOLVED = (3, 7), (0.6, 0.1)
+# The fraction s (see the top of this file), interpolated between its values at 3 and at 7 nodes in
+# the median patch.
+_FEW_NODES, _SHARE = (3, 7), (0.6, 0.1)
 # The error f of COR as a function of the number of nodes in the median patch. In about 90 % of the
 # contacts, the difference from the solution on a finer grid was below f. A patch of one node yields
 # late and all at once, so contacts with such patches may have almost any error of COR.
@@ -84,12 +85,14 @@ NOT_INCLUDED = (
 class Band:
     """The waves that a grid leaves out of a scan.
 
-    `octaves` is n in the formula of the module docstring, 0 if no wave is left out. `coarser_slope`
-    is S_2h/S in the same formula, 1 for a plane. `removed_slope` is the rms slope of the omitted
-    waves, divided by the rms slope of the scan. `pixel` is the spacing (m) that resolves them.
+    `octaves` is n in the formula of the module docstring, 0 if no wave is left out. `slope` and
+    `coarser_slope` are S and S_2h in the same formula. `removed_slope` is the rms slope of the
+    omitted waves, divided by the rms slope of the scan. `pixel` is the spacing (m) that resolves
+    them.
     """
 
     octaves: float
+    slope: float
     coarser_slope: float
     removed_slope: float
     pixel: float
@@ -102,10 +105,20 @@ class Band:
         pixel = max(float(provenance.get(f"pixel_{axis}_m", 0.0)) for axis in "xy")
         slope, coarser = rms_slope(surface), rms_slope(coarsen(surface))
         if coarser == 0:
-            return cls(0.0, 1.0, removed, pixel)
+            return cls(0.0, 0.0, 0.0, removed, pixel)
         beyond = -0.5 * math.log(max(1 - removed**2, 1e-4))
         octaves = beyond / math.log(max(slope / coarser, 1.05)) if removed >= 1e-3 else 0.0
-        return cls(octaves, coarser / slope * math.exp(-beyond), removed, pixel)
+        return cls(octaves, slope * math.exp(beyond), coarser, removed, pixel)
+
+    def pressure_ratio(self, force: float, area: float, contact_modulus: float) -> float:
+        """Ratio p/p_S of the module docstring, for a force (N) on a contact area (m²)."""
+        if self.slope <= self.coarser_slope:
+            return 1.0
+        smallest = (self.coarser_slope / self.slope) ** 2
+        if force <= 0 or area == 0:  # possible with adhesion
+            return smallest
+        added = 0.5 * contact_modulus * math.sqrt(self.slope**2 - self.coarser_slope**2)
+        return max(force / math.hypot(force, added * area), smallest)
 
 
 def unseen_yield(companions: Companions, waves: Band, rows: Sequence[Row]) -> Array:
@@ -118,7 +131,12 @@ def unseen_yield(companions: Companions, waves: Band, rows: Sequence[Row]) -> Ar
         np.array([row[name] for row in rows])
         for name in ("loading_work_J", "stored_energy_J", "plastic_work_J")
     )
-    weaker = companions.weaker(waves.coarser_slope**_PEAKS)
+    E_star = companions.coarse.pair.contact_modulus
+    ratios = [
+        waves.pressure_ratio(row["force_N"], row["contact_area_m2"], E_star)
+        for row in sorted(rows, key=lambda row: row["max_indentation_m"])
+    ]
+    weaker = companions.weaker(np.array(ratios))
     change = companions.own.at(work) - weaker.at(work)
     return np.asarray((stored / (stored + plastic)) ** 2 * change)
 
@@ -335,9 +353,7 @@ def _floor(row: Row) -> float:
     """Minimum discretisation error of a row: the product of s and f (see the top of this file)."""
     nodes = max(row["median_patch_nodes"], 1.0)
     expected = math.exp(np.interp(math.log(nodes), np.log(_PATCH_NODES), np.log(_PATCH_ERROR)))
-    if resolves(nodes) and row["adhesion_resolved"]:
-        return expected * _SHARE_RESOLVED
-    return expected * float(np.interp(nodes, _FEW_NODES, _SHARE_UNRESOLVED))
+    return expected * float(np.interp(nodes, _FEW_NODES, _SHARE))
 
 
 def _smoothed(values: Array, work: Array, near: float) -> Array:
