@@ -189,7 +189,8 @@ class Uncertainty:
     def by_one_place(self) -> Array:
         """Standard deviation of the logarithm of each parameter if all impacts hit one place.
 
-        It includes only the differences between random surfaces, not noise or grid.
+        It follows from (1 + 1/n) S, the covariance due to the differences between surfaces (see
+        the top of this file). It does not include the noise or the error of the grid.
         """
         n = len(self.deviations.surfaces)
         return np.asarray(math.sqrt((n + 1) / 2) * self.deviation("surface"))

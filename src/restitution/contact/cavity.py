@@ -72,8 +72,8 @@ Nodes = tuple[NDArray[np.intp], ...]  # indices of rows and columns
 # Coefficients of the ratio of the pressure bound to the yield strength, for round asperities:
 # growth with the logarithm of the strain (c₁), and upper limit (c₂).
 GROWTH, LARGEST = 0.65, 3.5
-# Relative increases of three coefficients from a round asperity to a ridge: c₀ (value at first
-# yield), c₁ (growth with strain) and c₂ (upper limit).
+# Three coefficients are larger for a ridge than for a round asperity, by these relative amounts:
+# c₀ (value at first yield), c₁ (growth with strain) and c₂ (upper limit).
 _RIDGE_ONSET, _RIDGE_GROWTH, _RIDGE_LARGEST = 0.11, 1.1, 0.25
 _DEPTH_FACTOR = 2.0  # the elastic pressure is computed at this multiple of the indentation
 

@@ -243,7 +243,7 @@ class Edge:
 
 
 def _curvature(touching: Mask, nodes: Nodes, faces: NDArray[np.intp]) -> Array:
-    """Mean curvature (1/cell) of the edge of each edge node's patch, limited to 0.35.
+    """For each edge node, the mean curvature (1/cell) of the outline of its patch, at most 0.35.
 
     The mean curvature is 2π divided by the perimeter of the patch. The perimeter is estimated as
     π/4 times the number of faces between the patch and the nodes outside. The factor π/4 is the

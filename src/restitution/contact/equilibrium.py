@@ -245,8 +245,8 @@ def build_state(
     """Build the state of a `solution` on `box`.
 
     Where the pressure is at the limit, a negative deformed gap becomes plastic displacement. The
-    elastic displacement overwrites `solution.gap`. If `limit` is an array, the plastic work is
-    copied from `history`, and the module `loading` adds the work of this step.
+    elastic displacement overwrites `solution.gap`. If `limit` is a number, the plastic work of this
+    step is added to that of `history`. If `limit` is an array, the module `loading` adds it later.
     """
     pressure, gap = solution.pressure, solution.gap
     plastic, work, adhesive_work, work_error = _past(contact, history)

@@ -42,8 +42,9 @@ _MOST = 1e6  # largest ratio of unloading to loading stiffness
 _SHIFTS = tuple(np.linspace(-7.0, 7.0, 71))
 _FEWER_SHIFTS = (-4.5, -3.0, -1.5, 0.0, 1.5, 3.0), (-4.0, -2.0, 0.0, 1.0, 2.0)
 _SEARCHES = 3, 15  # with one parameter and with several parameters
-# COR of mdr jumps at the velocity of first yield. This velocity differs a little in LAMMPS, so mdr
-# is also compared with the points at velocities that are smaller and larger by this ratio.
+# COR of mdr jumps at the velocity of first yield. In LAMMPS this velocity differs slightly from
+# that of `theory.MDR`. Each point is therefore compared with COR of mdr at three velocities: that
+# of the point, and those smaller and larger by this fraction.
 _JUMP = 0.02
 _AT_FORCE_ZERO = "separation, where the force is back to zero"
 
@@ -313,9 +314,10 @@ def _fit(
     low: list[float],
     high: list[float] | None = None,
 ) -> Array:
-    """Fit restitution(V, x) to the points; the parameters x stay within `low` and `high`.
+    """Fit the parameters x of restitution(V, x) to the COR of the resolved points of `law`.
 
-    `restitution` may return several rows, each of which is compared with the points.
+    The parameters stay within `low` and `high`. `restitution` may return several rows with one
+    value for each point. Each row is then compared with the COR of the points.
     """
     V, e = _seen(law, "velocity"), _seen(law, "restitution")
 

@@ -1,4 +1,4 @@
-"""The choice between compiled kernels and NumPy expressions, and of the kernels' instruction set.
+"""Choose compiled kernels or NumPy expressions, and the instruction set of the kernels.
 
 Each time-critical operation is written twice: as a NumPy expression of whole arrays, which works on
 any device, and as a C++ loop (a compiled kernel) that computes the same result in one pass over

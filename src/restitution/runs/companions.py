@@ -39,7 +39,8 @@ _TOLERANCE = 0.005  # allowed error of COR due to the steps of adhesive unloadin
 _LOSSLESS = 1e-6
 
 # A companion curve has two more depths than the run: the smallest depth times the first factor, and
-# the largest depth times the second factor. Other surfaces reach the same work at other depths.
+# the largest depth times the second factor. They are needed because other surfaces reach the same
+# loading work at other depths.
 _SHALLOWER, _DEEPER = 0.5, 1.3
 
 

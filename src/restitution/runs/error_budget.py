@@ -162,10 +162,11 @@ def widened_error(
 ) -> tuple[float, float]:
     """Widen `error`, the discretisation error of COR from a convergence study.
 
-    Three errors are added in quadrature: a minimum error, the error `unseen` (from `unseen_yield`),
-    and the error due to waves of the scan that the grid leaves out. The latter follows from
-    `last_change`, the difference of COR between the last two grids, and from `Band.octaves`.
-    Returns the sum and the error due to these waves.
+    Three errors are added to it in quadrature: a minimum error (`_floor`), the error `unseen` due
+    to nodes that would yield only on a finer grid (see `unseen_yield`), and the error due to waves
+    of the scan that the grid leaves out. The last error follows from `last_change`, the difference
+    of COR between the last two grids, and from `octaves` (`Band.octaves`). Returns the sum and the
+    error due to the waves left out.
     """
     band = _BAND * octaves * last_change
     return math.hypot(error, band, unseen, _floor(row)), band

@@ -38,7 +38,7 @@ from restitution.surfaces.wave_spectrum import Modes, WaveSpectrum, spectrum_of
 LEAST_PIXELS = 16  # smallest number of pixels of a scan along each axis
 _UNADJUSTED = 0.01  # the shortest waves, with this share of mean square height, are not adjusted
 _FIRST_BAND = 2**20  # largest number of nodes of the grid for the first band (the longest waves)
-_LEAST_FIRST = 8  # smallest number of cells of the first band along an edge of the scan
+_LEAST_FIRST = 8  # smallest number of cells along each edge of the scan in the first band's grid
 
 # A band is adjusted at most _WORK/n times, where n is the number of nodes of its grid. If _WORK/n
 # is outside the range _ADJUSTMENTS, the nearest limit of this range applies instead.

@@ -49,7 +49,7 @@ def _chandrupatla(
     """Return the roots of `excess` where the mask `inside` is true. Other elements are undefined.
 
     Point 1 (`x1`, `f1`) is the newest point and one end of the bracket. Point 2 is the other end.
-    Point 3 is the former end that point 1 has replaced.
+    Point 3 is the end of the previous bracket that point 1 has replaced.
     """
     x1, f1, x2, f2 = high, above, low, below
     root, share = np.full_like(x1, np.nan), np.full_like(x1, 0.5)

@@ -283,9 +283,8 @@ class MDR:
     def _returned(self, d: Values) -> Array:
         """Unloading work W_u (J) from the indentation `d`.
 
-        Beyond yield W_u = (1 + δ_R/d_e) E*A²B/12, where A is the height of the indenter and B = 2a
-        is its width. The penetration at full load is d_e = A/2, and d_e + δ_R is the elastic
-        recovery.
+        Beyond yield W_u = (1 + δ_R/d_e) E*A²B/12. Here A = 2d_e is the height of the elliptical
+        indenter, and B = 2a is its width. The elastic recovery is d_e + δ_R (see `_recovery`).
         """
         E_star = self.elastic.contact_modulus
         plastic = 2 / 3 * E_star * self._elastic_depth(d) * self._contact_radius(d)
