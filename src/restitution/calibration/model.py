@@ -91,7 +91,7 @@ class Mean:
         return np.asarray(np.mean([each.restitution(velocity) for each in self.curves], axis=0))
 
     def error(self, velocity: Array, name: Literal["solver_error", "model_error"]) -> Array:
-        """Largest solver error or model error of COR at `velocity` (m/s) of all surfaces."""
+        """Solver error or model error of COR at `velocity` (m/s), the largest over the surfaces."""
         errors = [each.interpolated(name, velocity) for each in self.curves]
         return np.asarray(np.max(errors, axis=0))
 

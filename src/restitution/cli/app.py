@@ -1,4 +1,4 @@
-"""The verbs and options of the command line."""
+"""The command line: its verbs (subcommands) in groups, and the option `--version`."""
 
 from __future__ import annotations
 

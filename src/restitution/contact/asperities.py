@@ -89,7 +89,7 @@ def _elongation(gap: Array, spacing: tuple[float, float]) -> Array:
 
 
 def _take_smaller_neighbours(lowest: Array, values: Array, axis: int) -> None:
-    """Where a neighbour along `axis` has a smaller value than `lowest`, write it to `lowest`."""
+    """Lower `lowest` to the `values` of the two neighbours along `axis` where they are smaller."""
     ahead, behind = ((_ALL,) * axis + (part,) for part in (_FROM, _TO))
     np.minimum(lowest[behind], values[ahead], out=lowest[behind])
     np.minimum(lowest[ahead], values[behind], out=lowest[ahead])

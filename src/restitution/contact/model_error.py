@@ -24,8 +24,8 @@ import numpy as np
 from restitution.contact.checks.resolution import tabor_parameter
 from restitution.contact.state import State
 
-# For each model of plasticity with a constant bound: values of the COR due to plasticity alone, and
-# the largest relative difference from finite elements at each of these values.
+# For each model of plasticity with a constant pressure bound: values of the COR due to plasticity
+# alone, and the largest relative difference from finite elements at each of these values.
 _CONSTANT = {
     "equilibrium": (
         (0.34, 0.5, 0.56, 0.68, 0.77, 0.86, 0.9999, 1.0),

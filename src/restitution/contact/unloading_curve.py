@@ -18,7 +18,7 @@ from restitution.contact.state import Array, State
 from restitution.numerics.quadrature import integrate_curve
 
 _FEW_NODES = 10  # below this number of contact nodes, the mean of G along the edge is unreliable
-_SMOOTHED = 11  # number of points to which each parabola that smooths the force is fitted
+_SMOOTHED = 11  # `_smoothed` fits each parabola to this number of points
 
 # A change of the force between two points is a jump if it exceeds this fraction of the largest
 # tension.

@@ -60,7 +60,7 @@ def dashpot_restitution(ratio: float) -> float:
 
 
 def dashpot_ratio(restitution: float) -> float:
-    """Return the damping ratio ζ that a spring and dashpot without tension need for a given e."""
+    """Return the damping ratio ζ of a linear spring and dashpot without tension that gives e."""
     return _root(dashpot_restitution, restitution, _LARGEST_DAMPING)
 
 

@@ -5,9 +5,9 @@
 V₀ is the geometric mean of the lowest and the highest velocity of the fit, and w scales ln(V/V₀) to
 the interval [−1, 1]. The term s/V² describes an energy loss by adhesion that is the same at every
 velocity. For an elastic pair, s is the square of the sticking velocity (Thornton & Ning 1998). The
-polynomial describes the loss by yielding. At low velocities, a pair without adhesion can lose
-nothing (e = 1), and a pair with adhesion can stick (e = 0). Of these velocities, the fit uses only
-the highest.
+polynomial describes the loss by yielding. At low velocities, a pair without adhesion may rebound
+without loss (e = 1), and a pair with adhesion may stick (e = 0). Among the points with e = 1 or
+e = 0, the fit uses only the one with the highest velocity.
 
 The fit is linear least squares in e². The error of the fit between the points is estimated from two
 values: the largest residual, and the largest leave-one-out residual (as in PRESS, Allen 1974, but
@@ -40,7 +40,8 @@ def compact_fit(law: Law) -> CompactFit | None:
     """
     V, ratio = law.column("velocity", resolved=True), law.column("ratio", resolved=True)
     lossless = int(np.append(ratio <= 1 - _NO_LOSS, True).argmax())  # number of lossless points
-    # Keep the last lossless (or sticking) point, because it fixes the polynomial at the low end.
+    # Keep the last lossless (or sticking) point, because it ties the polynomial to e = 1 (or e = 0)
+    # at the lowest velocities.
     first = max(lossless - 1, 0) if law.work_of_adhesion == 0 else 0
     sticks = law.sticks_below
     begin = first if sticks is None else max(int(np.searchsorted(V, sticks)) - 1, 0)

@@ -70,10 +70,11 @@ class LiveCurves:
             yield curve.maps.line(min(max(depth, 0), len(curve.maps) - 1))
 
     def beside(self, tab: str, shown: str, check: Callable[[], None]) -> Iterator[str]:
-        """For the last case of `tab`, yield the curve of the smooth bodies, and then the surface.
+        """Yield the curve of the smooth bodies, then the surface, for the last curve of `tab`.
 
         The surface is left out if the page already shows it. `shown` is the hash of the heights of
-        the surface that the page shows.
+        the surface that the page shows. `check` raises an exception if the answer is no longer
+        wanted.
         """
         curve = self._curves.get(tab)
         if curve is not None:

@@ -126,7 +126,7 @@ class Worker:
             send(line)
 
     def curve(self, tab: str, text: str) -> Iterator[str]:
-        """Yield the live curve."""
+        """Compute the curve of the case `text`; yield it as lines of JSON while it grows."""
         return self._curves.lines(tab, text, self._scans, self._check)
 
     def beside(self, tab: str, shown: str) -> Iterator[str]:

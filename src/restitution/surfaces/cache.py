@@ -25,8 +25,8 @@ from restitution.surfaces.surface import Surface
 
 _LONG = 1.0  # surfaces that take less time (s) to make are not cached
 _MOST = 2**30  # largest total size of all files (bytes)
-_LARGEST = 2**28  # largest size of the heights of one cached surface (bytes)
-_REST = 2**12  # estimated largest size of everything in a file except the heights (bytes)
+_LARGEST = 2**28  # a surface whose heights take more memory (bytes) is not cached
+_REST = 2**12  # estimated largest size of a file without its heights (bytes)
 
 
 def kept(parameters: Mapping[str, Any], make: Callable[[], Surface]) -> Surface:

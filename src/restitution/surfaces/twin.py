@@ -157,8 +157,9 @@ def _band(
 ) -> tuple[Modes, tuple[int, int]]:
     """Adjust the phases of the waves that cells of size `cell` (m) resolve.
 
-    The waves `known` were adjusted before and do not change. `kept` contains the largest numbers of
-    their periods along x and y. Return all waves and their largest numbers of periods.
+    The waves `known` were adjusted before and do not change. `kept` contains the largest number of
+    periods of these waves along x, and the largest number along y. Return all waves, and the same
+    two numbers for them.
     """
     from scipy.fft import irfft2, rfft2
 

@@ -11,7 +11,7 @@ After scaling, this equation contains a single parameter, v = β^½ V^{1/10} wit
 dissipative constant A of the material, which is a time, determines γ and β. The restitution e
 depends on v alone:
 
-    k = 4E*R*^½/3m*,  γ = 3/2 A k,  β = 3/2 A k^{2/5}
+    k = 4E*R*^½/(3m*),  γ = 3/2 A k,  β = 3/2 A k^{2/5}
     series   e = 1 − 1.153449 v² + 0.798267 v⁴ + 0.266666 v⁵ − …
     Padé     e = (1 + 0.501086 v)/(1 + 0.501086 v + 1.15345 v² + 0.577977 v³ + 0.532178 v⁴)
 
@@ -64,7 +64,7 @@ class Brilliantov(PositiveFields):
     ) -> Self:
         """Make the law from the dissipative constant A of the material.
 
-        The dissipation parameter is β = 3/2 A (4E*R*^½/3m*)^{2/5}.
+        The dissipation parameter is β = 3/2 A (4E*R*^½/(3m*))^{2/5}.
 
         Args:
             radius: Reduced radius R* (m).

@@ -157,7 +157,7 @@ class SpectralFilter(_Spectral):
 
     def __call__(self, r: Array, out: Array | None = None) -> Array:
         """Return the filtered `r`, with the shape of `r`, in a new array or in `out`."""
-        # Values are scaled to about one, because single precision has a limited range.
+        # Values are divided by the largest magnitude, because single precision has a limited range.
         scale = max_magnitude(r)
         return self._convolve(r, self._symbol, out, scale if scale != 0 else 1.0)
 

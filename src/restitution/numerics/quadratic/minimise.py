@@ -38,8 +38,8 @@ Array = NDArray[np.float64]
 # Bound on the rounding error of a product with K. The unit is the machine epsilon times the largest
 # value of the product. The largest error measured on 64² to 4096² nodes is 8 of these units.
 _ROUNDING = 10.0
-# Each step updates the gradient. The gradient is computed anew when the violation falls below this
-# multiple of the estimated error of the updated gradient.
+# Each step updates the gradient. The gradient is computed anew when the violation of the optimality
+# conditions falls below this multiple of the estimated error of the updated gradient.
 _CLEAR = 3.0
 # A bound can truncate a step at some nodes. If the optimal length then exceeds this fraction of the
 # truncated step, the whole truncated step is taken, so that these nodes reach the bound.
