@@ -76,7 +76,7 @@ def compare_theory(
             say(f"  with: {values}")
     for reason in dict.fromkeys(missing.values()):
         names = ", ".join(name for name, why in missing.items() if why == reason)
-        say(f"left out: {names}: {reason}")
+        say(f"left out: {names} ({reason})")
     if {"sticking", "thornton-ning"} <= missing.keys():
         say("The bodies are elastic and do not adhere: only Hertz theory applies, and COR is 1.")
     if out is not None:

@@ -246,7 +246,11 @@ def pull_off_of_punch(state: State) -> tuple[float, float]:
 
 
 def balances_are_reliable(state: State) -> bool:
-    """Whether `balance_of` is reliable: the grid is fine, and `pohrt-popov` is not used."""
+    """Whether the result of `balance_of` can be used for `state`.
+
+    It can be used if the grid resolves the pull-off radius of an asperity (`_RESOLVED`) and the
+    detachment criterion is not `pohrt-popov`.
+    """
     return state.contact.detachment != "pohrt-popov" and adhesive_nodes(state) >= _RESOLVED
 
 

@@ -146,8 +146,8 @@ def resolves_range(contact: Contact) -> bool:
 def require_fine_grid(contact: Contact) -> None:
     """Raise `CaseError` if the cells are too coarse to resolve the range of the attraction.
 
-    Surfaces with the provenance key `COMPANION` are exempt, because they only serve to compare
-    grids.
+    The coarser surfaces of companion curves (provenance key `COMPANION`) are exempt, because they
+    only serve to compare grids.
     """
     if not resolves_range(contact) and not contact.surface.provenance.get(COMPANION):
         raise CaseError(

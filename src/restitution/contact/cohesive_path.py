@@ -275,7 +275,10 @@ def _try(previous: CohesiveState | None, state: CohesiveState, at: float, residu
 
 
 def _parabola(previous: CohesiveState, state: CohesiveState, new: CohesiveState) -> float:
-    """Work (J) of the force from `state` to `new`, by the parabola through all three forces."""
+    """Work (J) of the force from `state` to `new`.
+
+    The force is interpolated by the parabola through the forces of all three states.
+    """
     a = state.indentation - previous.indentation
     b = new.indentation - state.indentation
     second = ((new.force - state.force) / b - (state.force - previous.force) / a) / (a + b)

@@ -210,7 +210,10 @@ def separation_of(path: list[State]) -> Separation:
 
 
 def _cohesive_separation(start: CohesiveState, end: CohesiveState, path: list[State]) -> Separation:
-    """Compute the result of a cohesive `path`. After its `end`, the bodies separate reversibly."""
+    """Compute the result of a cohesive `path` from the state `start` to the state `end`.
+
+    The bodies are assumed to separate reversibly after the state `end`.
+    """
     lost = end.adhesive_loss - start.adhesive_loss
     plastic = end.plastic_work - start.plastic_work
     fineness = max(start.contact.grid.spacing) / (COARSEST * cohesive_length(start.contact))

@@ -35,7 +35,7 @@ from restitution.laws.time_integration import StoredForce
 Array = NDArray[np.float64]
 
 _SPRINGS = 400  # number of springs on each half of the line
-_DEPTHS = 200  # number of depths of loading at which the loads of the springs are tabulated
+_DEPTHS = 200  # number of loading depths at which the loads of the springs are tabulated
 # A contact counts as elastic if the residual indentation is less than this fraction of the largest
 # indentation.
 _ELASTIC = 1e-3

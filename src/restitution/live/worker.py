@@ -130,7 +130,11 @@ class Worker:
         return self._curves.lines(tab, text, self._scans, self._check)
 
     def beside(self, tab: str, shown: str) -> Iterator[str]:
-        """Yield the curve of the smooth bodies, then the surface, for the last live curve."""
+        """Yield the curve of the smooth bodies and the surface that belong to the last live curve.
+
+        The surface comes second. It is left out if the page already shows it. `shown` is the hash
+        of the heights of the surface that the page shows.
+        """
         return self._curves.beside(tab, shown, self._check)
 
     def maps(self, tab: str, depth: int) -> Iterator[str]:

@@ -83,8 +83,8 @@ def _full_slip(results: xr.Dataset) -> list[Series]:
     """Mark the angle of full slip; beyond it, draw the closed form of tangential restitution.
 
     The angle of full slip is the smallest angle of impact at which the whole contact slides. The
-    list is empty without friction or without results. It is also empty if a body spins before the
-    impact, because the closed form does not include this spin.
+    returned list is empty without friction or without results. It is also empty if a body spins
+    before the impact, because the closed form does not include this spin.
     """
     if results["oblique_first_spin_before"].any() or results["oblique_second_spin_before"].any():
         return []

@@ -117,9 +117,10 @@ def _add_errors(
 ) -> None:
     """Add the errors due to surface and materials to the rows of the finest grid.
 
-    Each row also gets `errors_known`, which says whether all of these errors could be computed, and
-    `unseen_yield` and `octaves` (see `error_budget`), from which `_with_grid_errors` computes the
-    discretisation error. Rows whose loading work is not positive stay unchanged.
+    Each row also gets the values `errors_known`, `unseen_yield` and `octaves`. `errors_known` says
+    whether all of these errors could be computed. `_with_grid_errors` uses the other two values
+    (see `error_budget`) for the discretisation error. Rows whose loading work is not positive stay
+    unchanged.
     """
     reached = [row for row in runs[max(runs)][1] if row["loading_work_J"] > 0]
     if not reached:

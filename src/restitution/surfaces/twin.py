@@ -36,7 +36,8 @@ from restitution.surfaces.surface import Array, Surface
 from restitution.surfaces.wave_spectrum import Modes, WaveSpectrum, spectrum_of
 
 LEAST_PIXELS = 16  # smallest number of pixels of a scan along each axis
-_UNADJUSTED = 0.01  # the shortest waves, with this share of mean square height, are not adjusted
+# The shortest waves are not adjusted. They hold less than this share of the mean square height.
+_UNADJUSTED = 0.01
 _FIRST_BAND = 2**20  # largest number of nodes of the grid for the first band (the longest waves)
 _LEAST_FIRST = 8  # smallest number of cells along each edge of the scan in the first band's grid
 

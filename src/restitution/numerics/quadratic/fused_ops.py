@@ -99,8 +99,9 @@ def take_step(
 ) -> float:
     """Update p to p + `step` d and g to g + `step` Kd.
 
-    Write the projected gradient at the new point to `out`, and return its largest magnitude. If
-    `step` is 1, nodes where a bound truncated d lie exactly on this bound, in spite of rounding.
+    Write the projected gradient at the new point to `out`, and return its largest magnitude. At a
+    node where a bound has truncated d, a `step` of 1 sets p to exactly this bound, in spite of
+    rounding.
     """
     lower, upper = bounds
     low, high = ((step == 1) & (d == (bound - p).astype(d.dtype, copy=False)) for bound in bounds)

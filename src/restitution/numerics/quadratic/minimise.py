@@ -110,10 +110,10 @@ def minimise_quadratic(
     The search on the free nodes follows Polonsky and Keer (1999, Wear 231, 206–219). An upper bound
     is added, and four points are changed:
 
-    1. The direction first gets a trial length, which follows from earlier steps. It is projected
-       onto the bounds before the product with K, not after it. Then it is scaled to its optimal
-       length, as far as the bounds allow. So an iteration takes one product, and no step raises the
-       energy.
+    1. The direction first gets a trial length, which follows from earlier steps. It is truncated so
+       that a step of this length stays within the bounds. The product with K is computed after this
+       truncation, not before it. Then the direction is scaled to its optimal length, as far as the
+       bounds allow. So an iteration takes one product, and no step raises the energy.
     2. The direction is not reset when nodes reach or leave a bound. The factor β of Polak and
        Ribière is limited to the range from zero to the β of Fletcher and Reeves (Gilbert and
        Nocedal 1992, SIAM J. Optim. 2, 21–42). Each direction contains its trial length as a factor.
