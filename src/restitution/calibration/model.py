@@ -227,7 +227,11 @@ class CaseModel:
         return case.realisations if case.realisations > 1 else SURFACES
 
     def require_possible(self, x: Array) -> None:
-        """Raise `CaseError` or `SurfaceError` if results at parameters `x` would be meaningless."""
+        """Raise `CaseError` or `SurfaceError` if the case at parameters `x` has no valid result.
+
+        The case is checked at its deepest indentation. `contact.checks.inputs.impossible` lists the
+        reasons, such as a predicted contact radius above R*.
+        """
         case = self.case(x)
         require_possible(case.contact(self.folder), deepest_indentation(case))
 

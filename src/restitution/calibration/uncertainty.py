@@ -32,8 +32,9 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 CONFIDENCE = 0.95
-# Singular values of the scaled Jacobian A below this value are replaced by this value. The data do
-# not determine the corresponding combinations of parameters: a factor of e^1000 remains possible.
+# Singular values of the scaled Jacobian A below _LEAST are set to _LEAST. The data do not determine
+# the corresponding combinations of parameters. The standard deviation of the logarithm of such a
+# combination is then at least 1/_LEAST = 1000, so changes by a factor of e^1000 remain possible.
 _LEAST = 1e-3
 # The interval of a parameter counts as infinite if the half-width of the interval of its logarithm
 # is at least this value.

@@ -66,7 +66,7 @@ def stoppable() -> Iterator[None]:
 
 
 def _signal_main_thread(number: int) -> None:
-    if hasattr(signal, "pthread_kill"):  # also interrupts a system call in which the thread waits
+    if hasattr(signal, "pthread_kill"):  # also interrupts a blocking system call of the main thread
         signal.pthread_kill(threading.main_thread().ident or 0, number)
     else:
         _thread.interrupt_main(signal.Signals(number))

@@ -157,7 +157,9 @@ def _oblique(
         turning = turning or list(impact.spins())
     at = at or ([0.0] if turning else [])
     if not at or not fast:
-        raise CaseError("--angle, --velocity: an oblique impact needs both options; give them")
+        raise CaseError(
+            "--angle, --velocity: an oblique impact needs an angle and a velocity; give both"
+        )
     first, second = [*turning, 0.0, 0.0][:2]
     force = oblique_force(run, "--angle")
     table = table_of_numbers(

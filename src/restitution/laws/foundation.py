@@ -4,9 +4,9 @@ Springs stand side by side on a line that is symmetric about its middle. The two
 distance x from the middle count as one spring here. This spring touches when the indentation
 reaches g(x). At the indentation δ, its normal load per unit length is 2E* (δ − g), where E* is the
 contact modulus. With the tangential displacement u and the tangential modulus G*, its tangential
-load is 2G* u. The function g follows from the normal curve F(δ) alone: the inverse of g(x) is the
-contact radius a(δ) = F′(δ)/2E*. A sticking spring is displaced with the bodies. The tangential load
-|2G* u| is at most µ times the normal load, where µ is the coefficient of friction.
+load per unit length is 2G* u. The function g follows from the normal curve F(δ) alone: the inverse
+of g(x) is the contact radius a(δ) = F′(δ)/2E*. A sticking spring is displaced with the bodies. The
+tangential load |2G* u| is at most µ times the normal load, where µ is the coefficient of friction.
 
 For a sphere, g = x²/R*, and the foundation is exact: it gives Hertz's force, and Cattaneo's and
 Mindlin's tangential force for every history (Popov and Heß 2015, Method of Dimensionality
@@ -114,8 +114,9 @@ def has_yielded(law: StoredForce, deepest: float) -> bool:
 def _touching(law: StoredForce, depth: float, contact_modulus: float) -> tuple[Array, Array]:
     """Return indentations (m) on the unloading curve from `depth` (m), and their contact radii (m).
 
-    The radii are made to increase with the indentation, so that every spring touches once. They
-    are then scaled so that the loads of the springs add up to the force.
+    Where the radii would decrease as the indentation grows, they are kept constant. Every spring
+    then touches at one indentation only. Finally, the radii are scaled so that the loads of the
+    springs add up to the force.
     """
     end, force = law.separation(depth), law.loading(depth)
     shape, _ = law.shape(depth)

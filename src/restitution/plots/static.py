@@ -73,9 +73,10 @@ def write_figures(
 
 
 def write_figure(path: Path, figure: Figure, file_format: Format = "png") -> Path:
-    """Write `figure` atomically to `path` with the suffix of the format, and return the file.
+    """Write `figure` atomically to a file, and return the path of this file.
 
-    The same figure gives the same bytes. Raises `OutputError` if the file cannot be written.
+    The file is named `path` plus the suffix of the format, for example ".png". The same figure
+    gives the same bytes. Raises `OutputError` if the file cannot be written.
     """
     drawing, to_write = draw(figure), path.with_name(f"{path.name}.{file_format}")
     with warnings.catch_warnings(), matplotlib.rc_context({"svg.hashsalt": path.name}):

@@ -279,9 +279,11 @@ def _add_errors(
 
 
 def band_warning(surface: Surface, band_errors: Sequence[float]) -> Iterator[str]:
-    """Yield a warning if waves that the grid leaves out of a scan change COR.
+    """Yield a warning if COR changes due to waves of the scan that are too short for the grid.
 
-    The warning states which grid would resolve these waves, and whether such a grid is too large.
+    `band_errors` are the estimated changes of COR, one for each depth. The warning is given if one
+    of them exceeds `MISSING_BAND`. It states which grid would resolve these waves, and whether such
+    a grid is too large.
     """
     lacking = [error for error in band_errors if error > MISSING_BAND]
     if not lacking:

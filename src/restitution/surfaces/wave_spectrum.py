@@ -72,7 +72,10 @@ class WaveSpectrum:
         return C, k2
 
     def numbers(self, spacing: tuple[float, float]) -> tuple[int, int]:
-        """Largest m and n of the waves that both the scan and cells of size `spacing` resolve."""
+        """Largest m and n of the resolved waves (m, n).
+
+        These are the waves that both the scan and cells of size `spacing` resolve.
+        """
         most = [
             math.ceil(0.5 * edge / max(h, pixel) * (1 - _ROUNDING)) - 1
             for edge, h, pixel in zip(self.period, spacing, self.pixel, strict=True)

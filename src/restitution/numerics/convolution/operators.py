@@ -61,7 +61,7 @@ class _Spectral:
         self._workspace: NDArray[Any] | None = None
 
     def with_own_workspace(self) -> Self:
-        """Return the same operator with its own workspace and `count`, for another solve."""
+        """Return a copy for another solve, with its own workspace and with `count` set to 0."""
         other = copy(self)
         other._lock, other._workspace, other.count = Lock(), None, 0
         return other
