@@ -39,8 +39,8 @@ from restitution.numerics.box import union
 ACCURACY = 2e-4
 # The work of the force in a step is computed twice: by the trapezium rule, and from the parabola
 # through three forces. A step counts as free of jumps only if the two works are nearly equal. Their
-# difference must not exceed _CORRECTION times the error that is allowed for the step. If it does,
-# the force may have jumped, and the parabola may be right only by chance.
+# difference must not exceed _CORRECTION times the error that is allowed for the step. If the
+# difference is larger, the force may have jumped, and the parabola may be right only by chance.
 _CORRECTION = 10.0
 _FIRST_STEP = 0.25  # length of the first step, in units of the equilibrium separation z₀
 

@@ -99,7 +99,7 @@ def solve_pressure(
     `residual` is the tolerance on the violation of the contact conditions. Without adhesion it is
     relative to the largest overlap before deformation, with adhesion to `Contact.residual_length`.
     Contact at the grid edge is not checked here. Raises `NotConvergedError`. Raises `DomainError`
-    if elastic bodies in a periodic contact have no open gap left at a smaller indentation.
+    if a periodic contact of elastic bodies is complete (has no gap left) at `indentation`.
     """
     device, shape = current(), shape_of(box)
     b = _overlap(contact, indentation, box, history)

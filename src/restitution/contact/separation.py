@@ -45,10 +45,11 @@ _SMALL = {"crack-closure": 0.005, "pohrt-popov": 0.0}
 _MOST_STEPS = 3000  # steps after which unloading counts as not converged
 
 # Late release of nodes loses work (see the top of this file). The unloading work is computed from
-# the forces after each release, so to first order this loss does not reduce it. The remaining error
-# of the unloading work is estimated as this fraction of the lost work. In a comparison with ten
-# times finer steps, the fraction was below 0.1 with `crack-closure`. It was below 1/3 with
-# `pohrt-popov`, which releases nodes in larger jumps. The values here are 1.5 times 0.1 and 1/3.
+# the forces after each release. To first order, it therefore includes the lost work. The remaining
+# error of the unloading work is estimated as the lost work times the factor `_LATENESS`. In a
+# comparison with ten times finer steps, the factor was below 0.1 with `crack-closure`. It was below
+# 1/3 with `pohrt-popov`, which releases nodes in larger jumps. The values here are 1.5 times 0.1
+# and 1/3.
 _LATENESS = {"crack-closure": 0.15, "pohrt-popov": 0.5}
 # For cohesive contacts, the tolerance of the energy balance of a step (`accuracy` in
 # `cohesive_path`), as a fraction of the tolerance of COR.

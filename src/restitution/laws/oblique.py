@@ -142,8 +142,8 @@ def collide_obliquely(
     """
     if not 0 <= angle < math.pi / 2:
         raise CaseError(
-            f"angle: {math.degrees(angle):.6g} degrees from the normal is not an impact; give an "
-            "angle from 0 to below 90 degrees"
+            f"angle: {math.degrees(angle):.6g} degrees from the normal is not the angle of an "
+            "impact; give an angle from 0 to below 90 degrees"
         )
     if not (math.isfinite(friction) and friction >= 0):
         raise CaseError(f"friction: {friction} is not a coefficient of friction; give 0 or more")

@@ -136,8 +136,8 @@ class Family:
     def _velocities(self, radius: float) -> list[float]:
         """Velocities (m/s) of the case for the reduced `radius` (m).
 
-        The velocities of the mixture are included. Lower and higher velocities are added where the
-        range of W/R*³ of another pair of the family needs them. W is the loading work.
+        They include the velocities of the mixture. Lower and higher velocities are added until the
+        case covers the range of W/R*³ of every pair of the family. W is the loading work.
         """
         asked = self.mixture.velocities
         own = _particle(self.first, radius if self.second.wall else 2 * radius)

@@ -216,7 +216,7 @@ def _with_modulus_of(pair: Pair, other: Pair) -> Pair:
 
 
 def _yielding(case: Case) -> Yielding:
-    """Yield model of `case`, or the default model if the case lacks a value for its model."""
+    """Yield model of `case`, or the default model if a value for the chosen model is missing."""
     try:
         return case.yielding()
     except CaseError:

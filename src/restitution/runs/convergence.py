@@ -139,9 +139,10 @@ def _add_errors(
 
 
 def _levels(case: Case, folder: Path, grids: int) -> dict[int, float]:
-    """Return, for each refinement factor, the extra approach (m) to first touch on its grid.
+    """Choose the refinement factors; return each with the extra approach (m) of its grid.
 
-    The extra approach is the difference from the approach on the finest grid.
+    The bodies touch first on the finest grid. On another grid they touch only when they have
+    approached each other further by the extra approach.
     """
     if grids < 2:
         raise CaseError(f"grids: a study on {grids} grid cannot show convergence; give 2 or more")
@@ -249,10 +250,10 @@ def _with_grid_errors(rows: list[Row]) -> int:
     chance. The second part is the effect of the waves that the finest grid leaves out of a scan.
     The third part is the effect of nodes that would yield only on a finer grid.
 
-    A row stays unchanged if it lacks the values of `_add_errors` or a discretisation error. The
-    total error of a row is set only if all of its parts are known. If the omitted waves change COR
-    by more than `MISSING_BAND`, the row is marked as not resolved. Returns the number of rows that
-    were marked.
+    A row stays unchanged if it lacks a discretisation error or the values that `_add_errors` adds.
+    The total error of a row is set only if all of its parts are known. If the omitted waves change
+    COR by more than `MISSING_BAND`, the row is marked as not resolved. Returns the number of rows
+    that were marked.
     """
     lacking = 0
     for row in rows:

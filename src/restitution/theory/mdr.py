@@ -23,8 +23,8 @@ E* = E/(1 − ν²) and G = E/(2 + 2ν):
     impact      ½ m V² = W_l, e² = W_u/W_l; the contact ends where F returns to zero
 
 The contact stays elastic up to a mean pressure of almost 2.75 Y (a peak of 4.1 Y) and is then fully
-plastic at once. Between two spheres, LAMMPS assumes a rigid flat. So if two equal spheres collide,
-each of them hits this flat with half of the relative velocity. The law cannot describe a deformable
+plastic at once. If two spheres collide, LAMMPS places a rigid flat between them. Each of two equal
+spheres hits this flat with half of the relative velocity. The law cannot describe a deformable
 flat.
 
 At yield the rebound changes abruptly from Hertz to the elliptical indenter. So e drops from 1 by at
