@@ -254,10 +254,8 @@ class MDR:
         """Loading work W_l (J) to the indentation `d`."""
         d_Y = self.yield_indentation
         half = touching(d - d_Y) / 2
-        forces = sum(
-            w * self._force(d_Y + half * (1 + node))
-            for w, node in zip(_WEIGHTS, _NODES, strict=True)
-        )
+        nodes = _NODES.reshape(-1, *(1 for _ in np.shape(half)))  # in front of all other axes
+        forces = np.tensordot(_WEIGHTS, self._force(d_Y + half * (1 + nodes)), axes=1)
         return self.elastic.stored_energy(np.minimum(d, d_Y)) + half * forces
 
     def _elastic_depth(self, d: Values) -> Array:
