@@ -209,8 +209,8 @@ class InterfaceTable(Table):
         """Choose the yield model of the contact between two bodies; the softer body yields.
 
         Keys of the table [interface] have priority over the following defaults. If the yield
-        strength of the softer body is known, the limit of the contact pressure grows with
-        deformation. If only its hardness is known (as for glass), the body yields at this hardness.
+        strength of the softer body is known, the pressure at which it yields grows with
+        deformation. If only its hardness is known (as for glass), it yields at this hardness.
         Raises `CaseError` if a value that the model needs is unknown.
         """
         if self.yield_pressure is not None or self.plasticity in _CONSTANT_BOUND:

@@ -311,7 +311,7 @@ class Contact:
 
     @cached_property
     def mean_offset(self) -> float:
-        """Gap (m) between the mean surfaces of the bodies, at the apex and at first touch.
+        """Gap (m) between the mean surfaces of the bodies at the apex when the bodies first touch.
 
         The mean surface of a body is its smooth shape at the mean height of its roughness.
         """

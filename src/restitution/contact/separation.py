@@ -117,8 +117,8 @@ def _unload(
 ) -> Iterator[State]:
     """Generate `state` and the states of unloading down to separation.
 
-    The upper limit of the step length is inversely proportional to `finer`. For a cohesive contact,
-    the steps depend only on `tolerance`.
+    `finer` multiplies the smallest number of steps. `known` are states that may be reused, as in
+    `separate`. A cohesive contact uses only `tolerance`.
     """
     contact = state.contact
     if isinstance(state, CohesiveState):

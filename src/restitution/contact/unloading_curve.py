@@ -158,7 +158,11 @@ class SharedUnloading:
 
     @classmethod
     def of(cls, state: State, known: Sequence[State]) -> SharedUnloading | None:
-        """Return the `known` states if unloading from `state` can pass through them, or None."""
+        """Make the object from the `known` states; None if unloading from `state` cannot reuse them.
+
+        They are reused only if both unloadings belong to one contact in which no node has yielded,
+        `known` ends at separation, and the energy balances of both are reliable.
+        """
         if (
             not known
             or known[0].contact is not state.contact

@@ -106,7 +106,10 @@ def _misfit(fitted: Array, e2: Array) -> float:
 
 
 def _left_out(basis: Array, e2: Array) -> float:
-    """Largest leave-one-out residual of e at the inner points."""
+    """Largest error of e at a point (except the first and the last) that the fit leaves out.
+
+    For each of these points, the fit to all other points is compared with e at this point.
+    """
     worst = 0.0
     for k in range(1, e2.size - 1):
         others = np.arange(e2.size) != k

@@ -12,11 +12,12 @@ T follows from a one-dimensional foundation of springs with constant friction µ
 all springs slide to the end, the impulse of T is µ (1 + e) m* V_n for every force law. Here V_n is
 the normal impact velocity and e the normal restitution.
 
-The error of the impulse of T is the sum of three parts (`tangential_error` gives their sizes). For
-the first part, the motion is integrated again with a larger and a smaller tangential modulus. The
-second part exists if the contact has yielded. It decreases to zero towards full slip, in which all
-springs slide. The third part exists for unlike materials, and is proportional to the impulse. In
-full slip, the impulse is exact for bodies of equal materials.
+The error of the impulse of T is the sum of three parts (`tangential_error` gives their sizes). The
+first part is due to the error of the tangential stiffness. To compute it, the motion is integrated
+again with a larger and a smaller tangential modulus. The second part is due to yield. It decreases
+to zero towards full slip, in which all springs slide. The third part is due to unlike materials,
+and is proportional to the impulse. In full slip, the impulse is exact for bodies of equal
+materials.
 
 Neglected: the coupling of normal and tangential displacements of unlike materials, the torque about
 the normal, rolling friction, and elastic waves.

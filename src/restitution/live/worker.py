@@ -78,7 +78,10 @@ class Inbox:
                 raise NotWanted
 
     def _listen(self) -> None:
-        """Receive requests, and numbers of unwanted requests, until the parent process ends."""
+        """Receive messages until the parent process ends; then end this process.
+
+        A message is a new `Request`, or the `number` of a request that is no longer wanted.
+        """
         while True:
             try:
                 message = self._connection.recv()
@@ -148,7 +151,10 @@ class Worker:
     def take(
         self, tab: str, text: str, what: str, code: str, velocity: str, grids: int
     ) -> Iterator[str]:
-        """Write a file to download, and yield its name."""
+        """Write the file for the download `what`, and yield its path relative to the folder `room`.
+
+        `code` and `velocity` are the options of the export to a DEM code. `grids` is as in `run`.
+        """
         from restitution.live import take_away
 
         out = Path(mkdtemp(dir=self._room, prefix="take-"))

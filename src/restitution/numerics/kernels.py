@@ -88,7 +88,7 @@ def use_loop(expression: Callable[Arguments, Result]) -> Callable[Arguments, Res
 
 
 def loop_takes(values: Any) -> bool:
-    """Whether loops are loaded and `values` is a 2D NumPy array with contiguous rows."""
+    """Whether compiled loops are loaded and `values` is a 2D NumPy array with contiguous rows."""
     return (
         loops is not None
         and type(values) is np.ndarray

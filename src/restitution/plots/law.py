@@ -55,7 +55,7 @@ def law_figure(law: Law) -> Figure:
 
 
 def computed_points(law: Law, label: str, open_label: str) -> Points:
-    """Make a marker with an error bar for each point of `law`; unresolved points are open."""
+    """Make a marker with an error bar for each point of `law`, an open marker if unresolved."""
     cor = law.column("restitution")
     error, error_label = bars(cor, law.column("error"))
     return Points(

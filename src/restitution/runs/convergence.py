@@ -49,8 +49,8 @@ from restitution.runs.log import RunLog, Say, ignore
 from restitution.runs.refinement import settled, with_chosen_adhesion
 from restitution.runs.run import run_case
 
-# For the refinement factor of each grid: the extra approach (m) to first touch, compared with the
-# finest grid, and the rows of the curve on this grid.
+# The key is the refinement factor of a grid. The value contains the approach (m) to first touch
+# minus the approach on the finest grid, and the rows of the curve.
 _Runs = dict[int, tuple[float, list[Row]]]
 
 

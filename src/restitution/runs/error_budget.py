@@ -149,7 +149,7 @@ def grid_error(
     Omitted waves are waves of the scan that are too short for the grid.
 
     `change` is COR minus its value on cells twice as large, at the loading work `work` (J).
-    `unseen` comes from `unseen_yield`, and `octaves` is `Band.octaves`.
+    `unseen` is the result of `unseen_yield` (q² D), and `octaves` is `Band.octaves` (n).
     """
     near = np.sqrt(_smoothed(change**2, work, _NEAR_GRID))
     band = _BAND * octaves * near

@@ -221,7 +221,7 @@ def _nodes(most: tuple[int, int]) -> tuple[int, int]:
 
 
 def _copy(source: Modes, target: Modes, most: tuple[int, int]) -> None:
-    """Copy the waves of `source` with numbers of periods up to `most` into `target`."""
+    """Copy the waves with at most `most` periods along x and y from `source` into `target`."""
     M, N = most
     target[: M + 1, : N + 1] = source[: M + 1, : N + 1]
     if M:

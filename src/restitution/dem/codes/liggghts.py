@@ -77,7 +77,7 @@ def _by_types(
 ) -> list[list[str]]:
     """Return a symmetric matrix with a row and a column for each type.
 
-    `entry` computes the value of a pair. Two walls never touch; their value is `walls`.
+    `entry` gives the text for a pair. Two walls never touch, so every pair of walls gets `walls`.
     """
     known = {(pair.i, pair.j): entry(pair) for pair in pairs}
     numbers = range(1, len(table.particles) + 1)

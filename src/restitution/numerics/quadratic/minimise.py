@@ -141,8 +141,8 @@ def minimise_quadratic(
     at the final point. If the solve does not converge, `converged` of the result is False; no
     exception is raised.
     """
-    # Precision of the direction, of the arrays from which it is computed, and of its product
-    # with K.
+    # Floating-point type of the direction d, of the arrays r and z (from which d is computed), and
+    # of the product K d.
     work_type: Any = np.float64 if problem.K_single is None else np.float32
     measured = _root_mean_square if mean_violation else _largest
     K, b, K_single = problem.K, problem.b, problem.K_single or problem.K
