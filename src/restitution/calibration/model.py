@@ -82,7 +82,7 @@ class Curve:
 
 @dataclass(frozen=True)
 class Mean:
-    """The mean of the curves of several surfaces."""
+    """Mean COR of several surfaces of a case, and the largest errors among their `curves`."""
 
     curves: tuple[Curve, ...]
 

@@ -71,7 +71,7 @@ class Deviations:
 
     @property
     def by_grid(self) -> Array:
-        """The field `grid`, or zeros if `grid` is None, shape (points,)."""
+        """Change of COR on cells twice as large; zeros if `grid` is None, shape (points,)."""
         return np.zeros(self.random.size) if self.grid is None else self.grid
 
     @property

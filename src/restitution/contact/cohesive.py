@@ -367,8 +367,8 @@ def _far(contact: Contact, indentation: float, box: Box) -> tuple[float, float]:
         gap = np.maximum(contact.gap[part] + (z0 - indentation), 1.2 * z0)
         force -= float(np.sum(law.traction(gap))) * grid.cell_area
         energy += float(np.sum(law.energy(gap))) * grid.cell_area
-    # Outside the grid, the bodies count as smooth, at the mean height of the surface. Their force
-    # and energy are integrated outside a circle that has the area of the grid.
+    # Outside the grid, each body is replaced by its smooth mean surface (`Contact.mean_offset`).
+    # Force and energy are integrated outside a circle that has the area of the grid.
     R, (wide, long) = contact.pair.radius, grid.size
     edge = wide * long / (2 * math.pi * R) + contact.mean_offset + z0 - indentation
     edge = max(edge, 2 * z0)

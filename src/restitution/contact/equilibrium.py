@@ -218,10 +218,10 @@ def _scale_of(contact: Contact, indentation: float, b: Array) -> float:
 
 
 def operators_of(contact: Contact, make: Callable[..., Convolution] | None = None) -> Operators:
-    """Return a function that makes the elastic operator of a grid level and its inverse.
+    """Return a function that makes two operators for a grid level: K and its approximate inverse.
 
-    The operator gives the displacement due to a pressure; the inverse is approximate. `make` makes
-    the operator, by default that of the free or periodic half-space.
+    The elastic operator K gives the displacement due to a pressure. `make` makes K, by default for
+    the free or periodic half-space.
     """
     E_star, (hx, hy) = contact.pair.contact_modulus, contact.grid.spacing
     make = make or (periodic_half_space if contact.periodic else half_space)

@@ -263,7 +263,11 @@ def _late_force(state: State) -> float:
 
 
 def _plan(state: State, tolerance: float) -> tuple[float, float]:
-    """Estimate the depth (m) of elastic recovery, and the largest allowed `_late_force` (N)."""
+    """Estimate the elastic recovery (m), and the value of `_late_force` (N) that steps aim at.
+
+    Elastic recovery is the decrease of the indentation until separation. With the second value, the
+    error of the unloading work meets the `tolerance` of COR.
+    """
     stored, adhesion = state.stored_energy, state.contact.work_of_adhesion * state.contact_area
     # The elastic recovery is estimated in two ways, and the smaller value is used. The first
     # estimate belongs to a flat punch with the same area and stored energy. The second one belongs

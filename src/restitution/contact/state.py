@@ -195,7 +195,11 @@ class State:
 
 
 def _joined(labels: NDArray[np.int32], count: int) -> NDArray[np.int32]:
-    """For each label, return the number of its patch, which can continue across the grid edges."""
+    """Return the number of the patch that each label belongs to, in a periodic contact.
+
+    Each of the labels 1 to `count` marks connected contact nodes within the grid. Labels that meet
+    across opposite edges of the grid belong to the same patch.
+    """
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 

@@ -175,7 +175,10 @@ class Bodies:
         return (self.hertz if self.elastic else self.yielding).impact_velocity(indentation, self.m)
 
     def depth_under(self, force: Array) -> Array:
-        """Indentation (m) under `force` (N), from the same theory as in `velocity`."""
+        """Indentation (m) under `force` (N).
+
+        The indentation follows from Thornton and Ning or, for elastic bodies, from Hertz.
+        """
         return (self.hertz if self.elastic else self.yielding).indentation(force)
 
 

@@ -46,7 +46,7 @@ def full_slip_angle(friction: float, restitution: float, modulus_ratio: float) -
 
 
 def full_slip_restitution(friction: float, restitution: float, angle: float) -> float:
-    """Tangential restitution of the centres with full slip: 1 − µ (1 + e)/tan θ.
+    """Tangential restitution of the particle centres with full slip: 1 − µ (1 + e)/tan θ.
 
     Args:
         friction: Coefficient of friction µ (dimensionless).
@@ -54,8 +54,8 @@ def full_slip_restitution(friction: float, restitution: float, angle: float) -> 
         angle: Angle of impact from the normal (rad), above 0.
 
     Returns:
-        Ratio of the tangential velocities of the centres after and before the impact
-        (dimensionless).
+        Ratio of the relative tangential velocities of the particle centres after and before the
+        impact (dimensionless).
 
     Source:
         The impulse of a sliding contact: µ times the normal impulse, (1 + e) m* V_n.

@@ -75,7 +75,7 @@ def read_laws(folders: Sequence[Path]) -> list[Law]:
 
 
 def is_mixture(folder: Path) -> bool:
-    """Whether `folder` is the folder of a mixture, complete or not."""
+    """Whether `folder` is the folder of a mixture, even of an incomplete one."""
     return (folder / MIXTURE_FILE).is_file()
 
 

@@ -110,7 +110,11 @@ def dundurs(pair: Pair) -> float:
 
 
 def _largest_gap(law: StoredForce, deepest: float) -> float:
-    """Largest ratio of the depths of neighbouring unloading curves, up to the depth `deepest`."""
+    """Largest ratio of the initial depths of two neighbouring unloading curves.
+
+    Only the curves needed for an impact with the maximum indentation `deepest` (m) are compared. The
+    last of them is the first curve that begins at `deepest` or deeper.
+    """
     depths = law.unloading_from
     if depths[0] > _SHALLOWEST * deepest:
         depths = np.append(_SHALLOWEST * deepest, depths)

@@ -26,7 +26,8 @@ from restitution.mixtures.family import Family, Meeting
 Array = NDArray[np.float64]
 
 # An interpolation error of COR is accepted up to the limit given for the mixture. A larger error is
-# accepted, too, if it exceeds neither _MOST nor _SHARE times the error of the computed laws.
+# accepted, too, if it is at most _MOST and also at most the error of the computed laws times
+# _SHARE.
 _SHARE, _MOST = 0.25, 0.05
 _SAME = 1e-9  # largest relative difference of radii that count as equal
 
@@ -153,7 +154,7 @@ class Computed:
 
 
 def _of(law: Law, V: float, meeting: Meeting) -> float:
-    """Velocity (m/s) at which `law` has the W/R*³ that the pair `meeting` has at `V` (m/s).
+    """Velocity (m/s) at which W/R*³ of `law` equals W/R*³ of the pair `meeting` at `V` (m/s).
 
     W is the loading work, and R* the reduced radius. If the velocity is outside the range of `law`
     by at most 1e-3 (relative), the nearest velocity of this range is returned.

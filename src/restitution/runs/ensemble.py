@@ -95,7 +95,7 @@ class _Ensemble:
         self.band_errors: list[float] = []
 
     def compute(self) -> None:
-        """Run every surface, and estimate the errors of their mean."""
+        """Run the case on every surface, and estimate the errors due to grid and materials."""
         self.case = settled(self.case, self.folder, self.log.warn)
         for number in range(self.case.realisations):
             self._run(number)

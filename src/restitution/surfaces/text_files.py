@@ -88,8 +88,8 @@ def _parse_rows(path: Path, data: list[tuple[int, str]], *, plain: bool) -> list
 
     A line of text after the first scan line is damage, because other readers would silently skip
     it. Above the first scan line, a line of text is damage in two cases: the comments show that the
-    file is a matrix (`plain`), or at least half of a scan line can be read in it. Any other text
-    above the first scan line raises `NotAMatrixError`.
+    file is a matrix (`plain`), or the line holds at least half as many numbers as a scan line. Any
+    other text above the first scan line raises `NotAMatrixError`.
     """
     rows: list[list[float]] = []  # a line of text becomes an empty row
     first: NotAMatrixError | None = None
