@@ -88,9 +88,9 @@ def separate(
     is repeated with 2 and finally 4 times as many steps.
 
     `known` are states of another unloading of the same contact, which began at a smaller
-    indentation; it can be empty. If no node has yielded, unloading ends as soon as the force agrees
-    with that of `known`. The remaining states are then taken from `known`. Raises
-    `NotConvergedError` if the bodies do not separate.
+    indentation; it can be empty. If no node has yielded, unloading ends as soon as its force agrees
+    with the force of `known` at the same indentation. The remaining states are then taken from
+    `known`. Raises `NotConvergedError` if the bodies do not separate.
     """
     for finer in _REFINEMENTS:
         path = list(_unload(state, tolerance / finer, finer, known))

@@ -36,9 +36,9 @@ class UnloadingCurve:
     """Force (N) against decreasing indentation (m), shape (points,).
 
     If `balanced`, the first point is the state at which unloading begins, and the other points are
-    the balances of the contact areas (see the top of this file). Balances do not jump when nodes
-    are released; the force of the states does. If not `balanced`, for example with `pohrt-popov`,
-    the points are all states. `fixed` means that the contact area is fixed between the first two
+    the balances of the contact areas (see the top of this file). The force of the states jumps when
+    nodes are released, and the force of the balances does not. If not `balanced`, for example with
+    `pohrt-popov`, the points are all states. `fixed` means that the contact area is fixed between the first two
     points, so that the force is linear between them.
     """
 
@@ -158,10 +158,10 @@ class SharedUnloading:
 
     @classmethod
     def of(cls, state: State, known: Sequence[State]) -> SharedUnloading | None:
-        """Make the object from the `known` states; None if unloading from `state` cannot reuse them.
+        """Make the object from the `known` states; None if `state` cannot reuse them.
 
         They are reused only if both unloadings belong to one contact in which no node has yielded,
-        `known` ends at separation, and the energy balances of both are reliable.
+        `known` ends at separation, and the balances of both unloadings are reliable.
         """
         if (
             not known

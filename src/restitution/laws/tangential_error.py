@@ -41,8 +41,8 @@ from restitution.laws.time_integration import StoredForce
 # With these constants, the error estimate is at least as large as every difference that was found
 # in the comparison with boundary elements. The top of this file defines χ and β.
 #
-# Relative errors of the stiffness for ν = 0: the first for every contact, the second in addition
-# for a rough contact.
+# Relative errors of the stiffness for ν = 0. _NUMERICAL applies to every contact, and _ROUGH in
+# addition to rough contacts.
 _NUMERICAL, _ROUGH = 0.005, 0.04
 # Contact patches that are not round cause a relative error of the stiffness. This error is χ times
 # _SHAPE for up to _ALIGNED patches, and decreases from _ALIGNED to _INDEPENDENT patches. With even
@@ -112,8 +112,8 @@ def dundurs(pair: Pair) -> float:
 def _largest_gap(law: StoredForce, deepest: float) -> float:
     """Largest ratio of the initial depths of two neighbouring unloading curves.
 
-    Only the curves needed for an impact with the maximum indentation `deepest` (m) are compared. The
-    last of them is the first curve that begins at `deepest` or deeper.
+    Only the curves needed for an impact with the maximum indentation `deepest` (m) are compared.
+    The last of them is the first curve that begins at `deepest` or deeper.
     """
     depths = law.unloading_from
     if depths[0] > _SHALLOWEST * deepest:

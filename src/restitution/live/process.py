@@ -27,8 +27,8 @@ _LOST = as_json(
     }
 )
 _CLOSED = as_json({"error": "the program has ended; start restitution app again", "lost": True})
-# A process that does not stop a request is ended. Its other requests then get this line as their
-# answer, and `ask` repeats them.
+# A process that does not stop an abandoned request is terminated. Its other requests then get this
+# line as their answer, and `ask` repeats them.
 _AGAIN = "again"
 _Lines = asyncio.Queue[str | None]
 

@@ -369,7 +369,7 @@ class JKR(PositiveFields):
 
     @property
     def _energy_unit(self) -> Array:
-        """Unit of energy U = E*a_b⁵/R*² (J), where a_b is the contact radius at the break."""
+        """Unit of energy U = E*a_b⁵/R*² (J), where a_b is `break_radius`."""
         return self.contact_modulus * self.break_radius**5 / self.radius**2
 
 

@@ -38,7 +38,7 @@ class VelocityDamping:
         return 4 / 3 * self.pair.law.contact_modulus
 
     def restitution(self, share: float) -> float:
-        """Return COR at the impact velocity `share` × `pair.velocity` (the velocity of the export)."""
+        """Return COR at `share` times `pair.velocity`, the impact velocity of the export."""
         return hertz_restitution_at(self.pair.law, self.damping, share * self.pair.velocity)
 
 

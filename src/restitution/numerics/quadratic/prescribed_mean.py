@@ -27,7 +27,7 @@ from restitution.numerics.quadratic.multilevel import Operators, coarsened, may_
 
 _MAX_SOLVES = 60  # largest number of solves on one grid
 
-# Tolerance of a solve as a fraction of the estimated error of the multiplier D.
+# Ratio of the tolerance of a solve to the estimated error of the multiplier D.
 _ACCURACY = 0.05
 # Largest allowed error of the mean that a violation of the optimality conditions causes, as a
 # fraction of the tolerance of the mean.
