@@ -38,8 +38,8 @@ class UnloadingCurve:
     If `balanced`, the first point is the state at which unloading begins, and the other points are
     the balances of the contact areas (see the top of this file). The force of the states jumps when
     nodes are released, and the force of the balances does not. If not `balanced`, for example with
-    `pohrt-popov`, the points are all states. `fixed` means that the contact area is fixed between the first two
-    points, so that the force is linear between them.
+    `pohrt-popov`, the points are all states. `fixed` means that the contact area is fixed between
+    the first two points, so that the force is linear between them.
     """
 
     indentation: Array
