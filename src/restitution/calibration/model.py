@@ -47,7 +47,7 @@ Cost = Literal["full", "coarser", "quick"]
 large, and "quick" uses cells twice as large and only `_FEW` surfaces."""
 
 _RATIO = 1.3  # ratio of each depth to the previous depth
-SURFACES = 8  # number of surfaces of a curve if the case asks for one realisation
+SURFACES = 8  # number of surfaces of a curve if `realisations` of the case is 1
 _FEW = 3  # number of surfaces of a quick curve
 MOST_VELOCITIES = 12  # largest number of velocities in the fitted case file
 

@@ -29,8 +29,8 @@ def plastic_work(before: State | None, after: State) -> tuple[float, float]:
     Δu [b₁ + (b₂ − b₁) (δ₂/(δ₂ − δ₁) − 1/ln(δ₂/δ₁))],
     and its error is `_RULE_ERROR` Δu (b₂ − b₁).
 
-    A node that begins to yield in this step yields while its bound is nearer to b₂. The work per
-    area is then Δu [b₁ + `_NEW` (b₂ − b₁)], and its error is `_NEW_ERROR` Δu (b₂ − b₁).
+    While a node begins to yield in this step, its mean bound is nearer to b₂ than to b₁. The work
+    per area is then Δu [b₁ + `_NEW` (b₂ − b₁)], and its error is `_NEW_ERROR` Δu (b₂ − b₁).
     """
     contact, box = after.contact, after.box
     given, begun = after.plastic_displacement[box], np.asarray(contact.first_yield_pressure)

@@ -257,7 +257,10 @@ def _jumps(state: State) -> int:
 
 
 def _late_force(state: State) -> float:
-    """Half the jump of the force (N) due to nodes that were released at the end of a step."""
+    """Error of the mean force (N) of a step, because nodes are released only at its end.
+
+    It is half the jump of the force due to these releases.
+    """
     assert state.force_before_release is not None  # `unload_adhesive` always sets it
     return 0.5 * (state.force - state.force_before_release)
 

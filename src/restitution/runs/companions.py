@@ -144,9 +144,10 @@ class Companions:
         return self._curve(self.coarse)
 
     def weaker(self, factors: Array) -> Curve:
-        """Curve as `own`, but with a lower yield pressure or yield strength.
+        """The curve of the contact `coarse` with its yield limit multiplied by `factors`.
 
-        The yield pressure or strength is multiplied by `factors`, one for each of the depths.
+        The yield limit is the yield pressure or the yield strength, whichever is given. `factors`
+        holds one factor for each of the depths.
         """
         coarse = self.coarse
         keys = ("yield_pressure", "yield_strength")

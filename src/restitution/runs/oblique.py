@@ -119,7 +119,10 @@ def _row(
 
 
 def _apart(row: _Row, normal: float) -> float:
-    """Relative difference between the velocity of `row` and `normal` (m/s); infinite if unknown."""
+    """Relative difference between the velocity of `row` and `normal` (m/s).
+
+    It is infinite if the velocity of `row` is unknown.
+    """
     apart = abs(row["impact_velocity_m_per_s"] / normal - 1)
     return math.inf if math.isnan(apart) else apart
 

@@ -170,7 +170,8 @@ def _load_and_unload(
     for number, depth in enumerate(depths):
         if depth.state is None:
             failure = failure or depth.error
-            # A contact at the edge ends the curve, because deeper contacts reach the edge, too.
+            # A contact that reaches the edge of the grid ends the curve, because deeper contacts
+            # reach the edge, too.
             if not go_on or isinstance(depth.error, DomainError):
                 break
         else:
