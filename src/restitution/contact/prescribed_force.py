@@ -36,8 +36,8 @@ def solve_at_force(contact: Contact, force: float, *, start: State | None = None
 
     Raises:
         CaseError: The force is not positive.
-        DomainError: The force exceeds that of the whole grid at the yield pressure, or the contact
-            reaches the edge of the grid.
+        DomainError: The contact cannot carry the force, even with the yield pressure at all nodes
+            of the grid, or the contact reaches the edge of the grid.
         NotConvergedError: The force jumps from below to above `force`, or a solve did not converge.
     """
     from scipy.optimize import brentq

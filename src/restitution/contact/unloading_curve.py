@@ -36,8 +36,8 @@ class UnloadingCurve:
     """Force (N) against decreasing indentation (m), shape (points,).
 
     If `balanced`, the first point is the state at which unloading begins, and the other points are
-    the balances of the contact areas (see the top of this file). The force of the states jumps when
-    nodes are released, and the force of the balances does not. If not `balanced`, for example with
+    the balances of the contact areas (see the top of this file). When nodes are released, the force
+    jumps from state to state, but not from balance to balance. If not `balanced`, for example with
     `pohrt-popov`, the points are all states. `fixed` means that the contact area is fixed between
     the first two points, so that the force is linear between them.
     """

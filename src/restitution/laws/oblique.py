@@ -129,8 +129,8 @@ def collide_obliquely(
         velocity: Relative velocity of the centres before the impact (m/s), positive.
         angle: Angle between this velocity and the normal (rad), at least 0 and below π/2.
         friction: Coefficient of friction µ (dimensionless), not negative.
-        spins: Angular velocities of the two bodies before the impact (rad/s), positive in the sense
-            in which friction turns a body without spin.
+        spins: Angular velocities of the two bodies before the impact (rad/s), positive in the
+            direction in which friction accelerates the rotation of a body without spin.
 
     Returns:
         The collision.

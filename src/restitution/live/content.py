@@ -49,7 +49,7 @@ def text_of(content: Content) -> str:
         return tomli_w.dumps(tables)
     except (TypeError, ValueError) as error:
         raise CaseError(
-            f"{error}; a case file may contain texts, numbers, lists and tables"
+            f"{error}; a case file can contain strings, numbers, lists and tables"
         ) from None
 
 

@@ -56,8 +56,8 @@ def curve_row(
 ) -> dict[str, float]:
     """Make the row of `curve.csv` for one state of loading, with NaN for undefined values.
 
-    `refine` is the refinement factor of the grid. `touch` (m) is the extra approach to first touch
-    on this grid, compared with the finest grid. It is added to the indentations.
+    `refine` is the refinement factor of the grid. `touch` (m) is the approach at first touch on
+    this grid minus that on the finest grid. It is added to the indentations.
     """
     patches = state.patch_sizes()
     median = median_patch(patches)

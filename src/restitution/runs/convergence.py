@@ -165,8 +165,8 @@ def _levels(case: Case, folder: Path, grids: int) -> dict[int, float]:
 def _pressed_less(case: Case, later: float) -> Case:
     """Reduce the indentations of `case` by `later` (m), so that all grids have the same approach.
 
-    `later` is the extra approach to first touch, compared with the finest grid. Indentations that
-    do not exceed `later` are left out, because the bodies do not touch there.
+    `later` is the approach at first touch on the grid of `case` minus that on the finest grid.
+    Indentations that do not exceed `later` are left out, because the bodies do not touch there.
     """
     if case.indentation is None:
         return case  # loads and velocities do not depend on where a grid touches first

@@ -26,8 +26,9 @@ class Depth:
     """One depth of a case, after loading.
 
     `asked` is the prescribed value (m, N or m/s), and `refine` the refinement factor of the grid on
-    which the depth is solved. `touch` (m) is the extra approach to first touch on this grid,
-    compared with the finest grid. `state` is None if loading failed with `error`.
+    which the depth is solved. `touch` (m) is the approach at which the bodies first touch on this
+    grid minus the approach at which they first touch on the finest grid. `state` is None if loading
+    failed with `error`.
     """
 
     asked: float
@@ -38,7 +39,7 @@ class Depth:
 
 
 def later_touches(case: Case, folder: Path, factors: Iterable[int]) -> dict[int, float]:
-    """Extra approach (m) to first touch on each grid, compared with the finest of these grids.
+    """Approach (m) at first touch on each grid minus that on the finest of these grids.
 
     A coarse grid touches later because the highest point of the surface lies between its nodes.
     """

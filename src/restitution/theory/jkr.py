@@ -201,7 +201,7 @@ class JKR(PositiveFields):
 
     @cached_property
     def break_radius(self) -> Array:
-        """Contact radius a_b = (πwR*²/8E*)^{1/3} (m) at the break, the smallest stable radius."""
+        """Contact radius a_b = (πwR*²/8E*)^{1/3} (m) at which the contact breaks, the smallest."""
         R, E_star, w = self.radius, self.contact_modulus, self.work_of_adhesion
         return scalar_or_array(np.cbrt(np.pi / 8 * w * R**2 / E_star))
 
@@ -360,7 +360,7 @@ class JKR(PositiveFields):
         y = 2/(t² + k + k²/t²), which avoids cancellation.
         """
         d, d_b = np.asarray(indentation, dtype=np.float64), self.break_indentation
-        above = np.maximum((d - d_b) / -d_b, 0.0)  # 1 + k, exactly 0 at the break
+        above = np.maximum((d - d_b) / -d_b, 0.0)  # 1 + k, exactly 0 where the contact breaks
         k = above - 1
         t = np.cbrt(1 + (above * (1 - k + k**2)) ** 0.5)
         p = (t**2 + k + (k / t) ** 2) ** -0.5
