@@ -161,3 +161,10 @@ def test_the_comment_names_e_at_twice_the_velocity_up_to_the_end_of_the_law(law)
     """Stored velocities differ from the prescribed ones in the last digits."""
     text = export([law()], "lammps", 5.0 * (1 + 1e-8))["restitution.lmp"]
     assert " at 10 m/s" in text
+
+
+@pytest.mark.parametrize("code", [code for code in CODES if code != "csv"])
+def test_the_comment_has_a_title_only_if_the_case_has_one(law, code):
+    for title in ("Beads on a plate", ""):
+        text = "".join(export([law(title=title)], code, 1.0).values())
+        assert ("title:" in text) == bool(title)

@@ -263,9 +263,10 @@ def _environment() -> Environment:
 def _about(pair: Pair, code: str) -> list[str]:
     law, velocity = pair.law, pair.velocity
     p_y = "none (elastic)" if law.yield_pressure is None else f"{law.yield_pressure:.6g} Pa"
+    title = textwrap.shorten(comment_text(law.title), 200, placeholder=" ...")
     lines = [
         f"Pair {pair.i} {pair.j}: {pair.first} and {pair.second}",
-        f"  title: {textwrap.shorten(comment_text(law.title), 200, placeholder=' ...')}",
+        *([f"  title: {title}"] if title else []),
         f"  e = {pair.restitution:.6g} +/- {law.at(velocity).error:.2g} at {velocity:.6g} m/s"
         + _elsewhere(law, velocity),
         f"  R* = {law.radius:.6g} m, E* = {law.contact_modulus:.6g} Pa, m* = {law.mass:.6g} kg",
