@@ -1,5 +1,6 @@
-"""`restitution fit-law`: what it shows while it works."""
+"""`restitution fit-law`: what it shows while it works, and what it prints."""
 
+import csv
 import io
 
 from rich.console import Console
@@ -23,3 +24,14 @@ def test_it_says_which_law_it_is_fitting(cli, case_text, tmp_path, monkeypatch):
     places = [shown.find(step) for step in steps]
     assert -1 not in places
     assert places == sorted(places)
+
+
+def test_it_prints_the_error_of_cor_beside_those_of_the_fits(cli, case_text, tmp_path):
+    case, run, law = tmp_path / "case.toml", tmp_path / "run", tmp_path / "law"
+    case.write_text(case_text)
+    assert cli("run", case, "-o", run)[0] == 0
+    status, printed, _ = cli("fit-law", run, "-o", law)
+    assert status == 0
+    with (law / "table.csv").open() as file:
+        largest = max(float(row["restitution_error"]) for row in csv.DictReader(file))
+    assert f"an error of up to {largest:.2g}." in printed
