@@ -2,8 +2,9 @@
 
     python docs/studies/oblique.py
 
-Prints the tables of docs/oblique.md. Spheres of 5 mm, 3.9 m/s; nothing is fitted. The measured
-values are those of Powder Technol. 120, 281–291, digitised by the examples of the code Lethe.
+Prints the tables of docs/oblique.md. The spheres have a diameter of 5 mm and hit the glass at
+3.9 m/s; nothing is fitted. The measured values are those of Powder Technol. 120, 281–291, digitised
+by the examples of the code Lethe.
 """
 
 from __future__ import annotations

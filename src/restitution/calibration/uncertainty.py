@@ -60,11 +60,11 @@ class Deviations:
 
     @property
     def by_surface(self) -> Array:
-        """The field `surfaces`, scaled to the scatter of means, shape (surfaces, points).
+        """The field `surfaces` times a factor, shape (surfaces, points).
 
-        Let n be the number of surfaces. The sum of the outer products of the rows is 2/n times the
-        covariance of the COR of single surfaces. This is the covariance of the difference between
-        two means of COR, each over n surfaces.
+        Let n be the number of surfaces. The factor is chosen so that the sum of the outer products
+        of the rows is 2/n times the covariance of COR between single surfaces. This sum is the
+        covariance of the difference between two means of COR, each over n surfaces.
         """
         n = len(self.surfaces)
         return self.surfaces * math.sqrt(2 / (n * max(n - 1, 1)))
@@ -190,8 +190,9 @@ class Uncertainty:
     def by_one_place(self) -> Array:
         """Standard deviation of the logarithm of each parameter if all impacts hit one place.
 
-        It follows from (1 + 1/n) S, the covariance due to the differences between surfaces (see
-        the top of this file). It does not include the noise or the error of the grid.
+        The differences between surfaces then contribute (1 + 1/n) S to the covariance of the
+        parameters (see the top of this file). The result contains only this contribution, and
+        neither the noise nor the error of the grid.
         """
         n = len(self.deviations.surfaces)
         return np.asarray(math.sqrt((n + 1) / 2) * self.deviation("surface"))

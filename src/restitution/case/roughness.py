@@ -111,7 +111,7 @@ class GeneratedRoughness(Table):
     periodic: bool = True
 
     def variant(self, number: int) -> Self:
-        """Return a table for one other surface, with `number` added to the seed."""
+        """Return a table that generates one different surface: `number` is added to the seed."""
         return self.model_copy(update={"seed": self.seed + number, "realisations": 1})
 
     def surface(self, grid: Grid, _: Path, factor: int = 1) -> Surface:

@@ -67,10 +67,10 @@ _RELEASE_RADIUS, _LARGEST_RADIUS = 3, 40
 # only if G exceeds this factor times the work of adhesion.
 _LARGEST_ON_COARSE_GRIDS = 1.04
 # A grid counts as fine if the rim under tension is wider than _RESOLVED_RIM (cells). On a fine grid
-# the mean of G is accurate, and no node is released because its own tension exceeds the limit σ_c.
-# Such releases would begin at the kinks of an edge as soon as G reaches the work of adhesion w, and
-# would roughen the edge. A patch is at rest if the mean of max(1 − sqrt(w/G), 0) over its edge
-# nodes is below _AT_REST.
+# the mean of G is accurate, and the limit σ_c of the tension of a single node does not apply.
+# Releases by this limit would begin at the kinks of an edge as soon as G reaches the work of
+# adhesion w, and would roughen the edge. A patch is at rest if the mean of max(1 − sqrt(w/G), 0)
+# over its edge nodes is below _AT_REST.
 _RESOLVED_RIM, _AT_REST = 2.0, 0.002
 # Smallest width (cells) of a strip along the edge whose nodes are all released together. If the
 # strip is narrower, single nodes are released.

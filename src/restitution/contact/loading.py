@@ -43,9 +43,9 @@ from restitution.numerics.read_only import freeze
 PULL_INCREMENT = 1e-10
 # Quadrature of the force of a truncated contact. The tolerance is a fraction of force times
 # indentation. The margin is a multiple of the tolerance and is added to the error. The integrand
-# can be the force that truncation removes, which is zero up to first yield. If the quadrature began
-# with a single interval, this force could be zero at all sampled depths but the last. The
-# quadrature therefore begins with several intervals (panels).
+# can be the force that truncation removes. This force is zero up to first yield. In a single
+# initial interval, only the last of the sampled depths might lie above first yield. The quadrature
+# therefore begins with several intervals (panels).
 _TRUNCATION_TOLERANCE, _TRUNCATION_MARGIN, _TRUNCATION_PANELS = 3e-5, 10.0, 4
 # Relative tolerance of the integral of an adhesive force. The force jumps as asperities attach,
 # which limits the accuracy. A relative error of 1.5e-3 of the loading work changes COR by at most

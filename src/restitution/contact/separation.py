@@ -45,11 +45,11 @@ _SMALL = {"crack-closure": 0.005, "pohrt-popov": 0.0}
 _MOST_STEPS = 3000  # steps after which unloading counts as not converged
 
 # Late release of nodes loses work (see the top of this file). The unloading work is computed from
-# the forces after each release. To first order, it therefore includes the lost work. The remaining
-# error of the unloading work is estimated as the lost work times the factor `_LATENESS`. In a
-# comparison with ten times finer steps, the factor was below 0.1 with `crack-closure`. It was below
-# 1/3 with `pohrt-popov`, which releases nodes in larger jumps. The values here are 1.5 times 0.1
-# and 1/3.
+# the forces after each release. To first order, this corrects the loss: the result is the work of
+# continuous unloading. The remaining error of the unloading work is estimated as the lost work
+# times the factor `_LATENESS`. In a comparison with ten times finer steps, the factor was below 0.1
+# with `crack-closure`. It was below 1/3 with `pohrt-popov`, which releases nodes in larger jumps.
+# The values here are 1.5 times 0.1 and 1/3.
 _LATENESS = {"crack-closure": 0.15, "pohrt-popov": 0.5}
 # For cohesive contacts, the tolerance of the energy balance of a step (`accuracy` in
 # `cohesive_path`), as a fraction of the tolerance of COR.
@@ -178,7 +178,10 @@ def _unload(
 
 
 def separation_of(path: list[State]) -> Separation:
-    """Compute energies, error and pull-off force of the unloading along the states of `path`."""
+    """Compute the energies of an unloading, the error of its work, and the pull-off force.
+
+    `path` contains the states in the order of unloading, such as those that `separate` yields.
+    """
     depth = np.array([state.indentation for state in path])
     force = np.array([state.force for state in path])
     start, end = path[0], path[-1]

@@ -66,7 +66,7 @@ def _law(out: Path, run: RunResults) -> Law:
     if not points:
         raise CaseError(
             f"{out}: none of the stored depths is the maximum indentation of an impact, because "
-            "the bodies do not touch or adhesion pulls them together; add deeper indentations"
+            "the bodies do not touch or adhesion alone pulls them deeper; add deeper indentations"
         )
     warnings = list(summary["warnings"])
     if summary["status"] != "complete":

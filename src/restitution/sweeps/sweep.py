@@ -124,7 +124,8 @@ def put(case: dict[str, Any], path: str, value: Any) -> None:
     """Set the key at the dotted `path` to `value`.
 
     A number in the path selects one of several tables; the first table has the number 1. Raises
-    `CaseError` if the path does not lead to a key of one table.
+    `CaseError` if the path leads through a value, or if it does not select one of several tables
+    by a valid number.
     """
     table: Any = case
     *way, last = path.split(".")
