@@ -78,7 +78,7 @@ def _law(out: Path, run: RunResults) -> Law:
     if left := len(rows) - len(points):
         warnings.append(
             f"{left} of {len(rows)} depths are left out: no impact has its maximum indentation "
-            "there, because adhesion pulls the bodies together or the bodies do not touch"
+            "there, because adhesion alone pulls the bodies deeper or the bodies do not touch"
         )
     pair = case.pair()
     for name, value in (
