@@ -35,6 +35,7 @@ NOT_RUN = {
     ("docs/developers/recipes.md", "python tests/document_blocks.py docs/developers/recipes.md"): (
         "changes this page"
     ),
+    ("docs/tutorials/scan-to-lammps.md", "cd restitution"): "installs the packages",
     ("docs/mutation.md", "make mutation"): "takes ten minutes and more",
     ("docs/dem.md", "python match_velocity.py --wall 2 z 0.0 -- lmp -in my.in"): (
         "needs a simulation of its own"
