@@ -43,9 +43,9 @@ def crop(surface: Surface, *, x: Range | None = None, y: Range | None = None) ->
         ("y", y, surface.grid.y, surface.grid.spacing[1]),
     ):
         low, high = within or (centres[0], centres[-1])
-        # Half a pixel lies beyond each outermost centre. Half a pixel more is tolerated, because
-        # zero is at the centre of a pixel: if the number of pixels is even, zero is half a pixel
-        # away from the middle of the scan.
+        # The scan extends half a pixel beyond the outermost centres. The range may extend another
+        # half pixel: x and y are zero at the centre of a pixel, which is half a pixel away from the
+        # middle of the scan if the number of pixels is even.
         if low < centres[0] - h or high > centres[-1] + h:
             raise SurfaceError(
                 f"{name}: the range from {_um(low, high)} extends beyond the scan, whose pixels "
