@@ -259,7 +259,7 @@ def _add_errors(
     *,
     scattered: bool,
 ) -> list[float]:
-    """Add the errors to the rows of one grid, all with a positive loading work (`add_errors`)."""
+    """Add the errors to rows that belong to one grid, each with a positive loading work."""
     work = np.array([row["loading_work_J"] for row in reached])
     restitution = np.array([row["restitution"] for row in reached])
     companions = Companions(case, folder, sorted(row["max_indentation_m"] for row in reached))
