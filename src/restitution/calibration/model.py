@@ -236,7 +236,10 @@ class CaseModel:
         require_possible(case.contact(self.folder), deepest_indentation(case))
 
     def restitution(self, x: Array, velocity: Array, cost: Cost = "full") -> Array:
-        """Mean COR at `velocity` (m/s) for the parameters `x`."""
+        """COR at `velocity` (m/s) for the parameters `x`, averaged over surfaces.
+
+        `cost` selects the cell size and the number of surfaces (`Cost`).
+        """
         return self.at(x, cost).restitution(velocity)
 
 

@@ -155,7 +155,7 @@ class MeasuredRoughness(Table):
             raise ValueError('extend = "twin" makes a random surface and needs a seed; give a seed')
         if self.seed is not None and self.extend != "twin":
             raise ValueError(
-                'seed applies only to extend = "twin"; remove seed, or use place to select another '
+                'seed applies only to extend = "twin"; remove seed, or set place to select another '
                 "part of the scan"
             )
         if self.place and self.extend == "twin":

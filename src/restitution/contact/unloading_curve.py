@@ -23,8 +23,10 @@ _SMOOTHED = 11  # `_smoothed` fits each parabola to this number of points
 # A change of the force between two points is a jump if it exceeds this fraction of the largest
 # tension.
 _JUMP = 0.1
-# The last two points of the curve are the last balance and separation. To keep them apart, the
-# indentation falls between them by at least this fraction of its decrease up to the last balance.
+# The last two points of a complete curve are the last balance and the separation. They must have
+# different indentations. The indentation at separation is therefore lowered, if necessary, until it
+# is below that of the last balance by this fraction of the decrease from the start of unloading to
+# the last balance.
 _END = 1e-3
 # Two forces at one indentation count as equal if their difference is at most this fraction of the
 # largest tension or of the force, whichever is larger. Balances scatter by about this fraction.
@@ -158,10 +160,11 @@ class SharedUnloading:
 
     @classmethod
     def of(cls, state: State, known: Sequence[State]) -> SharedUnloading | None:
-        """Make the object from the `known` states; None if `state` cannot reuse them.
+        """Prepare the `known` states of an unloading for reuse in the unloading from `state`.
 
-        They are reused only if both unloadings belong to one contact in which no node has yielded,
-        `known` ends at separation, and the balances of both unloadings are reliable.
+        Returns None if the states cannot be reused. They are reused only if both unloadings belong
+        to one contact in which no node has yielded, `known` ends at separation, and the balances of
+        both unloadings are reliable.
         """
         if (
             not known

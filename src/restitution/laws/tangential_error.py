@@ -41,8 +41,8 @@ from restitution.laws.time_integration import StoredForce
 # With these constants, the error estimate is at least as large as every difference that was found
 # in the comparison with boundary elements. The top of this file defines χ and β.
 #
-# Relative errors of the stiffness for ν = 0. _NUMERICAL applies to every contact, and _ROUGH in
-# addition to rough contacts.
+# Relative errors of the stiffness for ν = 0. Every contact has the error _NUMERICAL. Rough contacts
+# have the additional error _ROUGH.
 _NUMERICAL, _ROUGH = 0.005, 0.04
 # Contact patches that are not round cause a relative error of the stiffness. This error is χ times
 # _SHAPE for up to _ALIGNED patches, and decreases from _ALIGNED to _INDEPENDENT patches. With even

@@ -1,4 +1,4 @@
-"""Complete runs and convergence studies for the page of `restitution app`.
+"""Runs and convergence studies that the page of `restitution app` requests.
 
 They write the same files as `restitution run` and `restitution converge`, but no figures.
 """
@@ -24,7 +24,11 @@ Check = Callable[[str], None]  # called with the progress; raises if the run is 
 
 
 class Runs:
-    """The runs of the page: each case is computed once, into a folder inside `room`."""
+    """The runs of the page, with one results folder for each case and number of grids.
+
+    The results folders lie in the folder `room`. Only the newest `_KEPT` of them are kept. A case
+    whose results are kept is not computed again.
+    """
 
     def __init__(self, room: Path) -> None:
         self._room = room

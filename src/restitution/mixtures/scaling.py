@@ -111,7 +111,7 @@ class Computed:
         )
 
     def _curves(self, meeting: Meeting) -> list[RatioCurve]:
-        """Make a curve of W_u/W_l (unloading over loading work) against R* for each velocity."""
+        """Make the curve of the work ratio W_u/W_l against R* for each velocity of the mixture."""
         ratios = (
             np.array([law.curve().at(_of(law, V, meeting)) for law in self.laws], dtype=float)
             for V in self.family.mixture.velocities

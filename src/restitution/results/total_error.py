@@ -18,7 +18,10 @@ def total(row: Mapping[str, float]) -> float:
 
 
 def largest_part(rows: Sequence[Mapping[str, float]]) -> str:
-    """Name of the part with the largest root mean square over the rows with a total error."""
+    """Name of the part of the total error with the largest root mean square over the rows.
+
+    Rows without a total error are ignored. A missing part counts as zero.
+    """
     known = [row for row in rows if not math.isnan(row["total_error"])]
 
     def squares(name: str) -> float:

@@ -259,7 +259,10 @@ def _add_errors(
     *,
     scattered: bool,
 ) -> list[float]:
-    """Add the errors to rows that belong to one grid, each with a positive loading work."""
+    """Do the work of `add_errors` for the rows of one grid.
+
+    The loading work must be positive in all of these rows.
+    """
     work = np.array([row["loading_work_J"] for row in reached])
     restitution = np.array([row["restitution"] for row in reached])
     companions = Companions(case, folder, sorted(row["max_indentation_m"] for row in reached))

@@ -34,8 +34,9 @@ def composite(surfaces: Sequence[Surface]) -> Surface:
 
     The provenance of the sum contains the provenance of each part, with the prefixes `part_1_`,
     `part_2_`, … For scans, it also states the files, the direction in which maps show y, and the
-    largest pixel size of the parts. It states whether all parts are periodic. For resampled parts,
-    it states the rms height of the removed waves and an upper bound of their relative rms slope.
+    largest pixel size of the parts. If all parts are periodic, it says so. For resampled parts, it
+    states the rms height of the removed waves. It also states an upper bound of the ratio of their
+    rms slope to the rms slope before resampling.
 
     Args:
         surfaces: Surfaces on the same grid.

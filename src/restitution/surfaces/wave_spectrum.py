@@ -41,7 +41,8 @@ class WaveSpectrum:
     The edges of the twin are `period` = (Px, Py), in metres. The wave (m, n), with integers m and
     n, has the wave vector 2π(m/Px, n/Py). `density` is the power spectrum of the scan, multiplied
     by a constant. Its values are the mean square heights (m²) of single waves of the twin, before
-    the factor a + b/k² is applied. The zero wave vector is in the middle of the array.
+    the factor a + b/k² is applied (see the top of this file). The zero wave vector is in the middle
+    of the array.
     """
 
     density: Array
