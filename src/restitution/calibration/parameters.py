@@ -36,7 +36,7 @@ class Parameter:
     unit: str
 
     def scaled(self, factor: float, digits: int = 17) -> str | float:
-        """Multiply the first guess by `factor`, in the notation of a case file."""
+        """Return the first guess times `factor`, written as in a case file (with its unit)."""
         if isinstance(self.written, str):
             return scaled(self.written, factor, digits)
         return float(f"{self.written * factor:.{digits}g}")

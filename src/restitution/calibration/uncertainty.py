@@ -76,9 +76,9 @@ class Deviations:
 
     @property
     def systematic(self) -> Array:
-        """Standard deviations of COR due to `random`, `surfaces` and `grid` together.
+        """Standard deviations of COR: root sum of squares of `random`, `by_surface` and `by_grid`.
 
-        If `random` contains the noise of the measurements, the result contains it, too.
+        The result contains the noise of the measurements if `random` contains it.
         """
         squares = self.random**2 + (self.by_surface**2).sum(axis=0) + self.by_grid**2
         return np.asarray(np.sqrt(squares))
@@ -145,10 +145,10 @@ class Uncertainty:
         return np.asarray(found)
 
     def half(self, direction: Array) -> float:
-        """Half-width of the 95 % interval of a combination of logarithms.
+        """Half-width of the 95 % interval of Σ cᵢ ln pᵢ, with the fitted parameters pᵢ.
 
-        `direction` contains the coefficients of the combination. The result is inf if the
-        half-width is at least ln 10⁶.
+        `direction` contains the coefficients cᵢ. The result is inf if the half-width is at least
+        ln 10⁶.
         """
         from scipy.stats import t
 

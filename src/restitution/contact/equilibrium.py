@@ -52,10 +52,11 @@ MAX_ITERATIONS = 1000  # iterations after which a solve counts as not converged
 
 @dataclass(frozen=True)
 class HeldNodes:
-    """Nodes that are held in contact and can carry tension, on the box of a solve.
+    """Nodes that are held in contact and can carry tension.
 
     `mask` marks the nodes, `tension` (Pa) is the largest tension allowed, and `first_guess` (Pa;
-    None means zero) is the initial pressure. `mask` and `first_guess` are arrays on the box.
+    None means zero) is the initial pressure. `mask` and `first_guess` cover the box, that is, the
+    rectangular part of the grid on which the contact is solved.
     """
 
     mask: Mask

@@ -24,7 +24,7 @@ NAMES = (
     "rough-energy",
 )
 
-# For each study, the values in the study file that `--quick` replaces.
+# For each study, the values that `--quick` uses instead of those in the study file.
 _QUICK: dict[str, dict[str, Any]] = {
     "hertz": {"grid.nodes": 256, "indentation.to": "1 um", "indentation.steps": 6},
     "thornton-ning": {"grid.nodes": 256, "indentation.to": "1 um", "indentation.steps": 6},

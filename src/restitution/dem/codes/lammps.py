@@ -134,7 +134,7 @@ def _counts(table: PairTable) -> list[int]:
 
 
 def _floor(table: PairTable) -> int | None:
-    """Type number of the first wall for which `table` has the laws with all types of spheres.
+    """Type number of the first wall that has a law in `table` with every type of sphere.
 
     None if there is no such wall.
     """

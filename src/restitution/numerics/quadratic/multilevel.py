@@ -60,10 +60,11 @@ _PLACES = 8  # number of local means along each axis (see the module `local_mean
 # diagonal of K. The full change −g/K₀₀ at one node alone would make g zero there. Any _GAP_FRACTION
 # from 0.15 to 0.5 works nearly as well.
 _MAX_FREE_FRACTION, _GAP_FRACTION = 0.05, 0.3
-# The damping factor of the local means is _USUAL_STIFFNESS/q, but at most 1. Here q is an estimated
-# Rayleigh quotient of K·M, where M is the approximate inverse of K. The vector of this quotient is
-# constant on the free nodes (those strictly between the bounds) and zero elsewhere. If the factor
-# is above _MAX_DAMPING_FACTOR, the local means are not damped, because damping would save no time.
+# The local means (see the module `local_mean`) are damped by the factor _USUAL_STIFFNESS/q. q is an
+# estimate of the Rayleigh quotient of K·M, where M is the approximate inverse of K, for a vector
+# that is constant on the free nodes (those strictly between the bounds) and zero elsewhere. If the
+# factor is above _MAX_DAMPING_FACTOR, the local means are not damped, because damping would save no
+# time.
 _USUAL_STIFFNESS, _MAX_DAMPING_FACTOR = 3.5, 0.7
 
 
