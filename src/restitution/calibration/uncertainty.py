@@ -71,7 +71,10 @@ class Deviations:
 
     @property
     def by_grid(self) -> Array:
-        """Change of COR on cells twice as large; zeros if `grid` is None, shape (points,)."""
+        """Change of COR if the cells are twice as large as those of the case, shape (points,).
+
+        It is the field `grid`, or zeros if `grid` is None.
+        """
         return np.zeros(self.random.size) if self.grid is None else self.grid
 
     @property

@@ -111,7 +111,7 @@ class GeneratedRoughness(Table):
     periodic: bool = True
 
     def variant(self, number: int) -> Self:
-        """Return a table that generates one different surface: `number` is added to the seed."""
+        """Return the table of a single surface, with the seed increased by `number`."""
         return self.model_copy(update={"seed": self.seed + number, "realisations": 1})
 
     def surface(self, grid: Grid, _: Path, factor: int = 1) -> Surface:

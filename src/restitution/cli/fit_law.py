@@ -57,8 +57,8 @@ def fit_law(
         answers.print(_table(found.laws))
     if found.laws:
         say(
-            "rms and worst: differences of the fitted laws from COR. COR itself has an error of up "
-            f"to {max(point.error for point in found.points):.2g}."
+            "The columns rms and worst state how far the fitted laws differ from COR. COR itself "
+            f"has an error of up to {max(point.error for point in found.points):.2g}."
         )
     say(f"The error of COR includes {found.conventions.restitution_error}.")
     say_written(out, [path.name for path in written])

@@ -89,7 +89,10 @@ def _elongation(gap: Array, spacing: tuple[float, float]) -> Array:
 
 
 def _take_smaller_neighbours(lowest: Array, values: Array, axis: int) -> None:
-    """Lower `lowest` to the `values` of the two neighbours along `axis` where they are smaller."""
+    """Lower each node of `lowest` to the smaller of its two neighbours in `values` along `axis`.
+
+    A node that is already lower than both neighbours stays unchanged.
+    """
     ahead, behind = ((_ALL,) * axis + (part,) for part in (_FROM, _TO))
     np.minimum(lowest[behind], values[ahead], out=lowest[behind])
     np.minimum(lowest[ahead], values[behind], out=lowest[ahead])

@@ -12,8 +12,8 @@ from restitution.numerics.box import Box
 # In each step, the pressure bound of a node grows. The error of the plastic work is a fraction of
 # this growth times the plastic displacement of the step. The fraction is _RULE_ERROR for nodes that
 # had yielded before the step, and _NEW_ERROR for nodes that begin to yield in the step. Both
-# fractions come from a comparison with steps that are 11 times finer. While a node begins to yield,
-# its mean bound is the bound before the step plus _NEW times the growth.
+# fractions come from a comparison with steps that are 11 times finer. At nodes that begin to yield,
+# the mean of the bound during yielding is the bound before the step plus _NEW times the growth.
 _RULE_ERROR, _NEW, _NEW_ERROR = 0.1, 0.8, 0.25
 
 
@@ -29,8 +29,9 @@ def plastic_work(before: State | None, after: State) -> tuple[float, float]:
     Δu [b₁ + (b₂ − b₁) (δ₂/(δ₂ − δ₁) − 1/ln(δ₂/δ₁))],
     and its error is `_RULE_ERROR` Δu (b₂ − b₁).
 
-    While a node begins to yield in this step, its mean bound is nearer to b₂ than to b₁. The work
-    per area is then Δu [b₁ + `_NEW` (b₂ − b₁)], and its error is `_NEW_ERROR` Δu (b₂ − b₁).
+    At nodes that begin to yield in this step, the mean of the bound during yielding is nearer to b₂
+    than to b₁. The work per area is then Δu [b₁ + `_NEW` (b₂ − b₁)], and its error is
+    `_NEW_ERROR` Δu (b₂ − b₁).
     """
     contact, box = after.contact, after.box
     given, begun = after.plastic_displacement[box], np.asarray(contact.first_yield_pressure)

@@ -195,10 +195,11 @@ class State:
 
 
 def _joined(labels: NDArray[np.int32], count: int) -> NDArray[np.int32]:
-    """Return the number of the patch that each label belongs to, in a periodic contact.
+    """Number the patches of a periodic contact, and return the patch number of each label.
 
-    Each of the labels 1 to `count` marks connected contact nodes within the grid. Labels that meet
-    across opposite edges of the grid belong to the same patch.
+    Each of the labels 1 to `count` marks a set of contact nodes that are connected within the grid.
+    Labels that meet across opposite edges of the grid belong to the same patch. The patch numbers
+    begin at 0; the result has the shape (count,).
     """
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components

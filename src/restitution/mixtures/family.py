@@ -44,7 +44,7 @@ class Meeting:
 
     @property
     def kappa(self) -> float:
-        """κ = m*/R*³ (kg/m³)."""
+        """Ratio κ = m*/R*³ (kg/m³); for the loading work W at velocity V, W/R*³ = ½ κ V²."""
         return self.mass / self.radius**3
 
 

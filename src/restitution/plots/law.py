@@ -55,7 +55,10 @@ def law_figure(law: Law) -> Figure:
 
 
 def computed_points(law: Law, label: str, open_label: str) -> Points:
-    """Make a marker with an error bar for each point of `law`, an open marker if unresolved."""
+    """Make a marker with an error bar for each point of `law`.
+
+    The marker is open if the grid does not resolve the contact at this point.
+    """
     cor = law.column("restitution")
     error, error_label = bars(cor, law.column("error"))
     return Points(

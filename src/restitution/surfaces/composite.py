@@ -33,10 +33,11 @@ def composite(surfaces: Sequence[Surface]) -> Surface:
     them first.
 
     The provenance of the sum contains the provenance of each part, with the prefixes `part_1_`,
-    `part_2_`, … For scans, it also states the files, the direction in which maps show y, and the
-    largest pixel size of the parts. If all parts are periodic, it says so. For resampled parts, it
-    states the rms height of the removed waves. It also states an upper bound of the ratio of their
-    rms slope to the rms slope before resampling.
+    `part_2_`, … For scans, it also states the files, the direction in which maps draw the y axis,
+    and the largest pixel size of the parts. If all parts are periodic, it says so. If parts were
+    resampled, it states the rms height of the waves removed from them. The entry `removed_slope` is
+    then an upper bound of the rms slope of the removed waves, divided by the rms slope of the sum
+    before resampling.
 
     Args:
         surfaces: Surfaces on the same grid.

@@ -69,10 +69,10 @@ def twin(scan: Surface, grid: Grid, seed: int) -> Surface:
 
     The provenance describes the waves left out (`removed_…`) and contains the statistics of the
     scan (`scan_…`). It also contains `spectrum_misfit`, the root mean square of the relative
-    difference between the spectra of twin and scan, in bands of a quarter octave. The spectrum of
-    the twin is the mean over parts of the size of the scan. A twin smaller than the scan is
-    compared as a whole. The weight of a band is the sum of two fractions: its share of the mean
-    square height and its share of the mean square slope.
+    difference between the spectra of twin and scan, in bands of a quarter octave. The twin is
+    divided into parts that are as large as the scan, and the spectra of at most `_PARTS` parts are
+    averaged. A twin smaller than the scan is compared as a whole. The weight of a band is the sum
+    of two fractions: its share of the mean square height and its share of the mean square slope.
 
     Raises `SurfaceError` for a scan that is flat or has fewer than 16 pixels along an axis, and for
     cells that are too large for any wave of the scan.
@@ -288,8 +288,8 @@ def _provenance(
 def _misfit(made: Surface, scan: Surface) -> float:
     """Relative rms difference between the radial spectra of the twin `made` and of `scan`.
 
-    The spectrum of the twin is the mean over parts of the size of the scan. Only waves that both
-    grids resolve are compared.
+    The spectrum of the twin is averaged over parts that are as large as the scan. Only waves that
+    both grids resolve are compared.
     """
     grid, pixel = made.grid, scan.grid.spacing
     nx, ny = (

@@ -85,5 +85,8 @@ def _density(body: Particle) -> float:
 
 
 def _contact_time(pair: Pair) -> float:
-    """Contact time (s) of an elastic impact at 1 m/s; R/2 replaces R* on a wall, as in YADE."""
+    """Contact time (s) of an elastic impact at 1 m/s.
+
+    On a wall, half the radius of the sphere replaces the reduced radius R*, as in YADE.
+    """
     return contact_time(pair.law, pair.law.radius / (2 if pair.wall else 1))

@@ -29,8 +29,8 @@ _MAX_SOLVES = 60  # largest number of solves on one grid
 
 # Ratio of the tolerance of a solve to the estimated error of the multiplier D.
 _ACCURACY = 0.05
-# Largest allowed error of the mean that a violation of the optimality conditions causes, as a
-# fraction of the tolerance of the mean.
+# A violation of the optimality conditions causes an error of the mean. This is the largest allowed
+# value of this error, as a fraction of the tolerance of the mean.
 _MEAN_SHARE = 0.5
 # `MeanTarget.residual` and `MeanTarget.precision` on coarser grids.
 _COARSE_RESIDUAL, _COARSE_MEAN = 1e-2, 0.02
