@@ -62,9 +62,9 @@ class Deviations:
     def by_surface(self) -> Array:
         """The field `surfaces` times a factor, shape (surfaces, points).
 
-        Let n be the number of surfaces. The factor is chosen so that the sum of the outer products
-        of the rows is 2/n times the covariance of COR between single surfaces. This sum is the
-        covariance of the difference between two means of COR, each over n surfaces.
+        Let n be the number of surfaces, and let V be the covariance matrix of COR for one surface.
+        The difference of two means of COR, each over n surfaces, has the covariance matrix 2 V/n.
+        The factor is chosen so that the outer products of the rows add up to this matrix.
         """
         n = len(self.surfaces)
         return self.surfaces * math.sqrt(2 / (n * max(n - 1, 1)))

@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from restitution.results.writer import ResultsFolder
 
 
-# Total error of COR from which the largest part of the error and its remedy are printed.
+# If the total error of COR is at least this value at any depth, the name of the largest part of the
+# error and the remedy are printed.
 _LARGE = 0.05
 _REMEDIES = {
     "restitution_error": "a smaller unloading.restitution_error reduces it",

@@ -74,7 +74,7 @@ def crest_gap_of(gap: Array) -> Array:
 
 
 def _elongation(gap: Array, spacing: tuple[float, float]) -> Array:
-    """Return the result of `elongation_of`, computed for all rows at once."""
+    """Compute the elongation at the nodes of `gap`. `elongation_of` calls it for strips of rows."""
     inner = slice(1, -1)
     hx, hy = spacing
     elongation = np.zeros(gap.shape)

@@ -269,10 +269,11 @@ def _late_force(state: State) -> float:
 
 
 def _plan(state: State, tolerance: float) -> tuple[float, float]:
-    """Estimate the elastic recovery (m), and the value of `_late_force` (N) that steps aim at.
+    """Estimate the elastic recovery (m), and choose the target value of `_late_force` (N).
 
-    Elastic recovery is the decrease of the indentation until separation. With the second value, the
-    error of the unloading work meets the `tolerance` of COR.
+    Elastic recovery is the decrease of the indentation until separation. If `_late_force` has the
+    target value in all steps, the error of the unloading work meets the `tolerance` of COR. The
+    target value is infinite if late release does not affect the unloading work.
     """
     stored, adhesion = state.stored_energy, state.contact.work_of_adhesion * state.contact_area
     # The elastic recovery is estimated in two ways, and the smaller value is used. The first

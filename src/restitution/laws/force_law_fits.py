@@ -37,9 +37,9 @@ Begin = Callable[[str, int, int], None]
 """Called before each fit: name of the force law, number of the fit (from 1), number of fits."""
 
 _MOST = 1e6  # largest ratio of unloading to loading stiffness
-# Searches begin at the best of several starting points. If the fit has one parameter, the starting
-# points vary this parameter (_SHIFTS); otherwise they vary the first two (_FEWER_SHIFTS). The
-# values are natural logarithms of the parameter divided by its first guess.
+# Possible starting points of the searches. Only the best _SEARCHES of these points are used. If the
+# fit has one parameter, the points vary this parameter (_SHIFTS); otherwise they vary the first two
+# (_FEWER_SHIFTS). The values are natural logarithms of the parameter divided by its first guess.
 _SHIFTS = tuple(np.linspace(-7.0, 7.0, 71))
 _FEWER_SHIFTS = (-4.5, -3.0, -1.5, 0.0, 1.5, 3.0), (-4.0, -2.0, 0.0, 1.0, 2.0)
 _SEARCHES = 3, 15  # with one parameter and with several parameters

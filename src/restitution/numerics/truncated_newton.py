@@ -129,11 +129,11 @@ def _newton_step(
 ) -> tuple[Array, Array, bool, bool]:
     """Solve (K⁻¹ + k) x = −r approximately, with the gradient r and k = φ″.
 
-    The step x is a change of the unknowns u. `limits` contains two numbers. The first is the radius
-    of the trust region in the norm (xᵀK⁻¹x)^½; it is infinite if there is no trust region yet. The
-    iteration stops at the edge of the trust region, and it follows a direction of negative
-    curvature up to this edge. If there is no trust region, it follows such a direction until the
-    largest change of u along it equals the second number, and then stops.
+    The step x is a change of the unknowns u. `limits` contains the radius of the trust region and a
+    length. The radius is measured in the norm (xᵀK⁻¹x)^½ and is infinite if there is no trust
+    region yet. The iteration stops at the edge of the trust region. If it meets a direction of
+    negative curvature, it follows this direction to the edge. If there is no trust region, it
+    follows the direction until the largest change of u along it equals the length, and then stops.
 
     Returns x, K⁻¹x, whether one of the limits ended the step, and whether the iteration met a
     direction of negative curvature.

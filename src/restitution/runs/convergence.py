@@ -274,7 +274,11 @@ def _with_grid_errors(rows: list[Row]) -> int:
 
 
 def _by_depth(case: Case, runs: _Runs) -> list[dict[int, Row]]:
-    """Return the rows of all grids for each depth, with discretisation error and observed order."""
+    """Return a dictionary for each depth: refinement factor of each grid, and row of this grid.
+
+    Each row contains the discretisation error and the observed order. Grids that did not reach a
+    depth are missing from its dictionary.
+    """
     asked = case.depths()
     found: list[dict[int, Row]] = [{} for _ in asked]
     for factor, (later, rows) in sorted(runs.items()):

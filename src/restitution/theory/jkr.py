@@ -201,7 +201,10 @@ class JKR(PositiveFields):
 
     @cached_property
     def break_radius(self) -> Array:
-        """Contact radius a_b = (πwR*²/8E*)^{1/3} (m) at which the contact breaks, the smallest."""
+        """Contact radius a_b = (πwR*²/8E*)^{1/3} (m) at which the contact breaks at fixed grips.
+
+        It is the smallest contact radius on the stable branch.
+        """
         R, E_star, w = self.radius, self.contact_modulus, self.work_of_adhesion
         return scalar_or_array(np.cbrt(np.pi / 8 * w * R**2 / E_star))
 

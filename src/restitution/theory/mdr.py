@@ -281,8 +281,9 @@ class MDR:
     def _returned(self, d: Values) -> Array:
         """Unloading work W_u (J) from the indentation `d`.
 
-        Beyond yield W_u = (1 + δ_R/d_e) E*A²B/12. Here A = 2d_e is the height of the elliptical
-        indenter, and B = 2a is its width. The elastic recovery is d_e + δ_R (see `_recovery`).
+        Up to yield W_u is the energy of the Hertz contact. Beyond yield
+        W_u = (1 + δ_R/d_e) E*A²B/12, where A = 2d_e is the height of the elliptical indenter and
+        B = 2a is its width. `_recovery` explains d_e, δ_R and the elastic recovery d_e + δ_R.
         """
         E_star = self.elastic.contact_modulus
         plastic = 2 / 3 * E_star * self._elastic_depth(d) * self._contact_radius(d)

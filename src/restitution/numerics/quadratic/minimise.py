@@ -41,8 +41,9 @@ _ROUNDING = 10.0
 # Each step updates the gradient. The gradient is computed anew when the violation of the optimality
 # conditions falls below this multiple of the estimated error of the updated gradient.
 _CLEAR = 3.0
-# A bound can truncate a step at some nodes. If the optimal length then exceeds this fraction of the
-# truncated step, the whole truncated step is taken, so that these nodes reach the bound.
+# A step is truncated at the nodes where it would cross a bound. The optimal length along the
+# truncated step is given as a multiple of this step. If it exceeds this fraction, the whole
+# truncated step is taken, so that these nodes reach the bound.
 _FULL_STEP_FRACTION = 0.8
 # First trial length, as a multiple of the preconditioned gradient. The first steps of a solve
 # typically have about this length. It is below 1 because bounds truncate these steps.

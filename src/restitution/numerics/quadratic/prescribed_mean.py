@@ -51,12 +51,12 @@ class MeanTarget:
     residual: float
 
     def tolerance(self, multiplier: float, slope: float) -> float:
-        """Return the largest allowed violation of the optimality conditions, in the units of D.
+        """Return the largest allowed violation of the optimality conditions.
 
-        `multiplier` is the Lagrange multiplier D, and `slope` is dD/dmean. The result is the
-        smaller of two limits. The first limit is `residual` times |D − `compliance` · `mean`|. The
-        second limit is the allowed error of the mean times `slope`, because a violation v changes
-        the mean by at most v/slope.
+        `multiplier` is the Lagrange multiplier D, and `slope` is dD/dmean. The result has the units
+        of D. It is the smaller of two limits. The first limit is `residual` times
+        |D − `compliance` · `mean`|. The second limit is `slope` times the allowed error of the
+        mean, because a violation v changes the mean by at most v/slope.
         """
         by_residual = self.residual * abs(multiplier - self.compliance * self.mean)
         return min(by_residual, _MEAN_SHARE * self.precision * self.mean * slope)
