@@ -288,8 +288,8 @@ def _provenance(
 def _misfit(made: Surface, scan: Surface) -> float:
     """Relative rms difference between the radial spectra of the twin `made` and of `scan`.
 
-    The spectrum of the twin is the mean over parts of the size of the scan. Only waves that both
-    grids resolve are compared.
+    The spectrum of the twin is averaged over parts of it that are as large as the scan (smaller if
+    the twin is smaller). Only waves that both grids resolve are compared.
     """
     grid, pixel = made.grid, scan.grid.spacing
     nx, ny = (
