@@ -151,10 +151,10 @@ def _check_points(measured: Measured, parameters: int) -> None:
 
 
 def _deviations(model: CaseModel, x: Array, velocity: Array) -> Deviations:
-    """Compute the deviations of COR from the curve with the parameters `x`.
+    """Estimate how far COR may deviate from the curve computed with the parameters `x`.
 
-    Each cause (solver, surface, grid and model) has its own field. The field `random` contains the
-    error of the solver, but not the noise of the measurements.
+    Each cause (solver, surface, grid and model) has its own field. The solver error is in the field
+    `random`. This field does not yet contain the noise of the measurements.
     """
     here = model.at(x)
     own = here.restitution(velocity)

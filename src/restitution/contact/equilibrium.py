@@ -68,9 +68,9 @@ class HeldNodes:
 class Solution:
     """Result of a solve on a box; the arrays have the shape of the box.
 
-    `overlap` is the indentation minus the gap before the solve (m), `gap` the deformed gap (m) and
-    `pressure` the pressure (Pa). `residual` is the residual that the solve reached (dimensionless),
-    and `convolutions` the number of convolutions that it took.
+    `overlap` is the overlap (m) of the surfaces before elastic deformation (see `_overlap`), `gap`
+    the gap (m) after deformation and `pressure` the pressure (Pa). `residual` is the residual that
+    the solve reached (dimensionless), and `convolutions` the number of convolutions that it took.
     """
 
     overlap: Array
@@ -206,7 +206,10 @@ def elastic_pressure(
 
 
 def _overlap(contact: Contact, indentation: float, box: Box, history: State | None = None) -> Array:
-    """Overlap (m) of the surfaces on `box` before elastic deformation: indentation minus gap."""
+    """Overlap (m) of the surfaces on `box` before elastic deformation: indentation minus gap.
+
+    If `history` is given, its plastic displacement is subtracted, too.
+    """
     b: Array = indentation - contact.gap[box]
     if history is not None:
         b -= history.plastic_displacement[box]

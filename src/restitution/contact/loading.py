@@ -41,10 +41,10 @@ from restitution.numerics.read_only import freeze
 
 # Retraction after each loading increment (m) (Ghanbarzadeh et al. 2019, §2.2).
 PULL_INCREMENT = 1e-10
-# Quadrature of the force of a truncated contact. The tolerance is a fraction of force times
-# indentation. The margin is a multiple of the tolerance and is added to the error. The integrand
-# can be the force that truncation removes. This force is zero up to first yield. In a single
-# initial interval, only the last of the sampled depths might lie above first yield. The quadrature
+# Quadrature of the force of a truncated contact. The tolerance is a fraction of the product of
+# force and indentation. The margin is a multiple of the tolerance and is added to the error. If the
+# integrand is the force that truncation removes, it is zero up to first yield. A single initial
+# interval might then contain only one sampled depth above first yield, the last one. The quadrature
 # therefore begins with several intervals (panels).
 _TRUNCATION_TOLERANCE, _TRUNCATION_MARGIN, _TRUNCATION_PANELS = 3e-5, 10.0, 4
 # Relative tolerance of the integral of an adhesive force. The force jumps as asperities attach,

@@ -78,13 +78,13 @@ class TangentialState:
 
     @property
     def stored_energy(self) -> float:
-        """Elastic energy (J) due to the traction: half the work of the traction on the surfaces."""
+        """Elastic energy (J) due to the traction: ½ ∫ traction × `box_displacement` dA."""
         twice = float(np.einsum("ij,ij->", self.box_traction, self.box_displacement))
         return 0.5 * twice * self.normal.contact.grid.cell_area
 
     @property
     def slip(self) -> Array:
-        """Slip (m) on `box`: displacement of the bodies minus that of their surfaces."""
+        """Slip (m) on `box`: `displacement` of the bodies minus elastic `box_displacement`."""
         return self.displacement - self.box_displacement
 
     @property

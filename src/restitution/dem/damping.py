@@ -60,7 +60,10 @@ def dashpot_restitution(ratio: float) -> float:
 
 
 def dashpot_ratio(restitution: float) -> float:
-    """Return the damping ratio ζ of a linear spring and dashpot without tension that gives e."""
+    """Return the damping ratio ζ of a linear spring and dashpot that have the restitution e.
+
+    The force of spring and dashpot is never tensile (see the top of this file).
+    """
     return _root(dashpot_restitution, restitution, _LARGEST_DAMPING)
 
 

@@ -7,10 +7,11 @@ at the normal velocity (`time_integration`). The contact point slides with the v
 
 for solid spheres (moment of inertia I = 2/5 m R²) with the radii R_i, the masses m_i and the spins
 ω_i. Here v_t is the relative tangential velocity of the centres, m* the reduced mass and T the
-tangential force. A spin is positive in the direction in which friction turns a sphere without spin.
-T follows from a one-dimensional foundation of springs with constant friction µ (`foundation`). If
-all springs slide throughout the impact, the impulse of T is µ (1 + e) m* V_n for every force law.
-Here V_n is the normal impact velocity and e the normal restitution.
+tangential force. The positive direction of a spin is the direction in which friction would rotate
+a sphere that has no spin yet. T follows from a one-dimensional foundation of springs with constant
+friction µ (`foundation`). If all springs slide throughout the impact, the impulse of T is
+µ (1 + e) m* V_n for every force law. Here V_n is the normal impact velocity and e the normal
+restitution.
 
 The error of the impulse of T is the sum of three parts (`tangential_error` gives their sizes). The
 first part is due to the error of the tangential stiffness. To compute it, the motion is integrated

@@ -1,10 +1,10 @@
 """Compute all laws of a mixture from as few runs as the error of interpolation allows.
 
-All pairs of particles from two components (materials or walls) are a family. For each family, laws
-are first computed at the smallest, a middle and the largest reduced radius R*. The laws at other R*
-are interpolated. If the interpolation error of a pair exceeds its limit, the law at one more R* is
-computed, about in the middle between two computed R*. This is repeated until no error exceeds its
-limit.
+A component is a material or a wall. A family consists of all pairs of bodies from the same two
+components. For each family, laws are first computed at the smallest, a middle and the largest
+reduced radius R*. The laws at other R* are interpolated. If the interpolation error of a pair
+exceeds its limit, the law at one more R* is computed, about in the middle between two computed R*.
+This is repeated until no error exceeds its limit.
 """
 
 from __future__ import annotations

@@ -163,10 +163,12 @@ def _levels(case: Case, folder: Path, grids: int) -> dict[int, float]:
 
 
 def _pressed_less(case: Case, later: float) -> Case:
-    """Reduce the indentations of `case` by `later` (m), so that all grids have the same approach.
+    """Reduce the indentations of `case` by `later` (m), for a run on a coarser grid.
 
-    `later` is the approach at first touch on the grid of `case` minus that on the finest grid.
-    Indentations that do not exceed `later` are left out, because the bodies do not touch there.
+    `later` is the approach at first touch on this grid minus that on the finest grid. A run
+    measures indentations from first touch on its own grid. With the reduced indentations, the
+    bodies approach each other equally far on all grids. Indentations that do not exceed `later` are
+    left out, because at this approach the bodies do not yet touch on the coarser grid.
     """
     if case.indentation is None:
         return case  # loads and velocities do not depend on where a grid touches first

@@ -135,9 +135,10 @@ class _Ensemble:
             )
 
     def _add_errors(self) -> None:
-        """Estimate the errors due to grid and materials, on the surface that reached most depths.
+        """Estimate the errors due to grid and materials, on one surface.
 
-        The scatter between surfaces follows from the ensemble itself.
+        This is the surface whose curve has the largest number of depths. The scatter between
+        surfaces follows from the ensemble itself.
         """
         if not self.curves or not self.case.total_error:
             return

@@ -33,8 +33,8 @@ _ERRORS: dict[Code, type[RestitutionError]] = {
     "pixel-above-contact": SurfaceError,
     "range-unresolved": CaseError,
 }
-# `no_range` warns only if the energy that adhesion dissipates between smooth bodies is at most this
-# fraction of the energy that it dissipates according to JKR.
+# `no_range` divides the energy that adhesion dissipates between smooth bodies by the prediction of
+# JKR for this energy. It warns only if the ratio is at most this value.
 _NEARLY_JKR = 0.9
 # A run will fail if the predicted contact radius is larger than this factor times half the width of
 # the grid.

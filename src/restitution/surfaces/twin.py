@@ -288,8 +288,8 @@ def _provenance(
 def _misfit(made: Surface, scan: Surface) -> float:
     """Relative rms difference between the radial spectra of the twin `made` and of `scan`.
 
-    The spectrum of the twin is averaged over parts that are as large as the scan. Only waves that
-    both grids resolve are compared.
+    The spectrum of the twin is averaged over parts that are as large as the scan, or over the whole
+    twin if it is smaller than the scan. Only waves that both grids resolve are compared.
     """
     grid, pixel = made.grid, scan.grid.spacing
     nx, ny = (

@@ -65,7 +65,8 @@ def impossible(contact: Contact, indentation: float) -> Finding | None:
 def doubtful(contact: Contact, indentation: float) -> list[Finding]:
     """Find reasons to doubt the result of loading `contact` to `indentation` (m).
 
-    They are the findings of `resolution_findings` and the following ones:
+    The result contains the findings of `resolution_findings` and the following ones. Each code is
+    followed by the names of its values:
 
     * `tilted-scan`: `file`, and `explained`, the fraction of the height variance that a plane
       explains;

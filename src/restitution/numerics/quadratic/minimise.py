@@ -215,7 +215,10 @@ def _largest(largest: float, r: Array) -> float:
 
 
 def _root_mean_square(largest: float, r: Array) -> float:
-    """Root mean square of the nonzero values of `r`, whose largest magnitude is `largest`."""
+    """Root mean square of the nonzero values of `r`, or `largest` if it is not positive.
+
+    `largest` is the largest magnitude in `r`.
+    """
     if not largest > 0:
         return largest
     return math.sqrt(dot_products(r, r, r)[0] / np.count_nonzero(r))

@@ -60,11 +60,11 @@ _PLACES = 8  # number of local means along each axis (see the module `local_mean
 # diagonal of K. The full change −g/K₀₀ at one node alone would make g zero there. Any _GAP_FRACTION
 # from 0.15 to 0.5 works nearly as well.
 _MAX_FREE_FRACTION, _GAP_FRACTION = 0.05, 0.3
-# The local means (see the module `local_mean`) are damped by the factor _USUAL_STIFFNESS/q. q is an
-# estimate of the Rayleigh quotient of K·M, where M is the approximate inverse of K, for a vector
-# that is constant on the free nodes (those strictly between the bounds) and zero elsewhere. If the
-# factor is above _MAX_DAMPING_FACTOR, the local means are not damped, because damping would save no
-# time.
+# The preconditioner multiplies the local means of the residual (see the module `local_mean`) by the
+# factor _USUAL_STIFFNESS/q. Here q is an estimate of the Rayleigh quotient of K·M, where M is the
+# approximate inverse of K. The vector of this quotient is constant on the free nodes (those
+# strictly between the bounds) and zero elsewhere. If the factor is above _MAX_DAMPING_FACTOR, the
+# local means are left unchanged, because damping would save no time.
 _USUAL_STIFFNESS, _MAX_DAMPING_FACTOR = 3.5, 0.7
 
 
