@@ -47,11 +47,11 @@ def work_by_balance(
 ) -> tuple[float, float, int]:
     """Return the loading work (J), the error of its quadrature (J) and the number of convolutions.
 
-    The contact is loaded to a few depths. For the contact area at each depth, the balance is
-    computed, which is a point of indentation and force (see the top of this file). The curve
-    through these points is integrated over the indentation. The integral begins at the state
-    `start` or, if None, at first touch. `load` solves the contact at a depth (m), with a shallower
-    state (or None) as its initial guess. `tolerance` is relative to the work.
+    The contact is loaded to a few depths. At each depth, the indentation and the force at the
+    balance of the contact area are computed (see the top of this file). The force at these balances
+    is integrated over the indentation. The integral begins at the state `start` or, if None, at
+    first touch. `load` solves the contact at a depth (m), with a shallower state (or None) as its
+    initial guess. `tolerance` is relative to the work.
     """
     contact, last = state.contact, state.indentation
     first, work, convolutions = 0.0, 0.0, 0
