@@ -75,7 +75,7 @@ class Curve:
     def interpolated(
         self, name: Literal["solver_error", "model_error", "resolved"], velocity: Array
     ) -> Array:
-        """Interpolate one of the fields at `velocity` (m/s)."""
+        """Return the value of the field `name` at `velocity` (m/s), by interpolation."""
         V = self.ratio.velocities
         return np.asarray(np.interp(np.log(velocity), np.log(V), getattr(self, name)))
 

@@ -36,9 +36,9 @@ _ACCURACY = 1e-3  # tolerance of solves between releases, as a fraction of the c
 
 # At the balance, the mean energy release rate G along the edge equals the work of adhesion (see the
 # top of this file). It is found by interpolation between the state before a retraction (position 0)
-# and the state after it (position 1), linear in sqrt(G). It can also lie before the first state,
-# down to the position _EARLIEST. The mean includes only edge nodes at which G exceeds the fraction
-# _ACTIVE of the work of adhesion in one of the states.
+# and the state after it (position 1), linear in sqrt(G). The balance can also lie before the first
+# state, down to the position _EARLIEST. The mean includes only edge nodes at which G exceeds the
+# fraction _ACTIVE of the work of adhesion in one of the states.
 _ACTIVE, _EARLIEST = 0.8, -0.5
 # Balances are used only if the contact radius at which an asperity pulls off is at least this
 # number of cells. On coarser grids, most nodes leave the contact because the bodies separate, not

@@ -86,7 +86,7 @@ class BoundedLaw:
         return np.maximum(self.least - self.base - u, 0.0)
 
     def continuation(self, u: Array) -> Array:
-        """Energy (J/m²) of the linear continuation below the gap `least`, for elastic bodies."""
+        """Energy (J/m²) of the linear continuation, which elastic bodies have below `least`."""
         below = -self.beyond(u)
         return below * (self._slope + 0.5 * self._stiff * below)
 

@@ -107,10 +107,12 @@ class _Search:
         return abs(math.sqrt(max(state.loading_work, 0.0) / self._work) - 1)
 
     def first_depth(self) -> float:
-        """Return a first guess (m), by a Newton step from the start or for smooth bodies.
+        """Return a first guess (m) of the depth.
 
-        A cohesive contact is instead loaded until the prescribed work is exceeded. Later solves
-        continue from the last state with less work, so the loading path is not followed again.
+        It is found by a Newton step from the start state. Without a start state, or if this step
+        fails, it is the depth of smooth bodies. A cohesive contact is instead loaded until the
+        prescribed work is exceeded. Later solves continue from the last state with less work, so
+        the loading path is not followed again.
         """
         if self._contact.cohesive:
             before, reached = load_until(

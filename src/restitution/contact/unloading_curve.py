@@ -24,8 +24,8 @@ _SMOOTHED = 11  # `_smoothed` fits each parabola to this number of points
 # tension.
 _JUMP = 0.1
 # The last two points of a complete curve are the last balance and the separation. They must have
-# different indentations. The indentation at separation is therefore lowered, if necessary, until it
-# is below that of the last balance by this fraction of the decrease from the start of unloading to
+# different indentations, so the indentation at separation is lowered if necessary. The difference
+# is then at least this fraction of the decrease of the indentation from the start of unloading to
 # the last balance.
 _END = 1e-3
 # Two forces at one indentation count as equal if their difference is at most this fraction of the

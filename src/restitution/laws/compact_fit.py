@@ -106,9 +106,10 @@ def _misfit(fitted: Array, e2: Array) -> float:
 
 
 def _left_out(basis: Array, e2: Array) -> float:
-    """Largest error of e at a point (except the first and the last) that the fit leaves out.
+    """Largest leave-one-out error of e.
 
-    For each of these points, the fit to all other points is compared with e at this point.
+    Each point except the first and the last is left out in turn. Its e is compared with the fit to
+    all other points.
     """
     worst = 0.0
     for k in range(1, e2.size - 1):

@@ -110,7 +110,7 @@ def dundurs(pair: Pair) -> float:
 
 
 def _largest_gap(law: StoredForce, deepest: float) -> float:
-    """Largest ratio of the initial depths of two neighbouring unloading curves.
+    """Largest ratio of the depths at which two neighbouring unloading curves begin.
 
     Only the curves needed for an impact with the maximum indentation `deepest` (m) are compared.
     The last of them is the first curve that begins at `deepest` or deeper.
