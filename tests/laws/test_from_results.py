@@ -111,6 +111,24 @@ def test_an_error_of_which_a_part_is_not_known_may_be_anything(e, largest):
     assert from_results._error(row, asked=False) == approx(0.05)
 
 
+def test_a_law_says_that_the_total_error_is_unknown_after_an_interruption(tmp_path):
+    def stop(text):
+        if len(found.rows) == 3:
+            raise KeyboardInterrupt
+
+    text = CASE.replace("total_error = false\n", "")
+    found = ResultsFolder(tmp_path / "out")
+    with pytest.raises(KeyboardInterrupt):
+        run_realisations(parse_case(text), text, tmp_path, found, stop)
+    law = bare_law(tmp_path / "out")
+    assert [point.error for point in law.points] == [
+        max(point.restitution, 1 - point.restitution) for point in law.points
+    ]
+    assert any("the total error is unknown at 3 of 3 depths" in text for text in law.warnings)
+    assert "largest possible error" in law.conventions.restitution_error
+    assert "solver" not in law.conventions.restitution_error
+
+
 def test_the_ratio_of_a_mean_is_that_of_its_restitution_unless_it_sticks():
     row = {"restitution": 0.5, "unloading_work_J": 3e-9}
     assert from_results._ratio(row, 1e-8, means=False) == approx(0.3)

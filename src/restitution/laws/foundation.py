@@ -4,7 +4,7 @@ Springs stand side by side on a line that is symmetric about its middle. The two
 distance x from the middle count as one spring here. This spring touches when the indentation
 reaches g(x). At the indentation δ, its normal load per unit length is 2E* (δ − g), where E* is the
 contact modulus. With the tangential displacement u and the tangential modulus G*, its tangential
-load per unit length is 2G* u. The function g follows from the normal curve F(δ) alone: the inverse
+load per unit length is 2G* u. The function g follows from the normal force F(δ) alone: the inverse
 of g(x) is the contact radius a(δ) = F′(δ)/2E*. A sticking spring is displaced with the bodies. The
 tangential load |2G* u| is at most µ times the normal load, where µ is the coefficient of friction.
 

@@ -80,6 +80,11 @@ def _law(out: Path, run: RunResults) -> Law:
             f"{left} of {len(rows)} depths are left out: no impact has its maximum indentation "
             "there, because adhesion alone pulls the bodies deeper or the bodies do not touch"
         )
+    if unknown := sum(_is_unknown(row, asked=case.total_error) for row in rows):
+        warnings.append(
+            f"the total error is unknown at {unknown} of {len(rows)} depths; the error stated "
+            "there is the largest possible one, the larger of COR and 1 - COR"
+        )
     pair = case.pair()
     for name, value in (
         ("reduced_radius_m", pair.radius),
@@ -104,7 +109,7 @@ def _law(out: Path, run: RunResults) -> Law:
         model={key: str(value) for key, value in model.items()},
         conventions=Conventions(
             **summary["conventions"],
-            restitution_error=_error_includes(summary["diagnostics"]),
+            restitution_error=_error_includes(summary["diagnostics"], asked=case.total_error),
         ),
         yield_velocity=derived["yield_velocity_m_per_s"],
         sticking_velocity=derived.get("sticking_velocity_m_per_s"),
@@ -145,9 +150,15 @@ def _read(out: Path) -> RunResults:
     return run
 
 
-def _error_includes(diagnostics: Mapping[str, object]) -> str:
-    """State in words what `Point.error` includes, and what it does not include."""
-    includes = diagnostics.get("total_error_includes") or "solver"
+def _error_includes(diagnostics: Mapping[str, object], *, asked: bool) -> str:
+    """State in words what `Point.error` includes, and what it does not include.
+
+    `asked` states whether the case asks for the total error.
+    """
+    includes = diagnostics.get("total_error_includes")
+    if not includes and asked:
+        return "everything, because it is the largest possible error of COR"
+    includes = includes or "solver"
     excludes = diagnostics.get("total_error_does_not_include") or "anything else"
     model = diagnostics.get("largest_model_error")
     error = f"; model_error is up to {model:.2g}" if isinstance(model, float) else ""
@@ -194,9 +205,15 @@ def _error(row: _Row, *, asked: bool) -> float:
     The result is then the largest possible error of COR. If the case did not ask for the total
     error, the result is the root sum of squares of the known parts.
     """
-    if not math.isnan(known := row.get("total_error", math.nan)):
-        return known
-    return max(row["restitution"], 1 - row["restitution"]) if asked else total(row)
+    if _is_unknown(row, asked=asked):
+        return max(row["restitution"], 1 - row["restitution"])
+    known = row.get("total_error", math.nan)
+    return total(row) if math.isnan(known) else known
+
+
+def _is_unknown(row: _Row, *, asked: bool) -> bool:
+    """Whether the case `asked` for a total error that the row lacks."""
+    return asked and math.isnan(row.get("total_error", math.nan))
 
 
 def _particle(name: str, body: BodyTable) -> Particle:
