@@ -86,6 +86,8 @@ def test_blocks_that_are_not_run_are_these():
         ("e = 0.56", "e = 0.57", True),
         ("e = 0.56", "e = 0.58", False),
         ("8 nodes", "9 nodes", False),
+        ("0.097228433876019 m", "0.097228434159140 m", True),
+        ("0.097228433876019 m", "0.097228833876019 m", False),
         ("1e-3 m", "2e-3 m", True),
         ("… nodes", "9 nodes", True),
         ("a\n…\nb", "a\nc\nd\nb", True),
