@@ -97,13 +97,14 @@ def _force(results: xr.Dataset) -> Drawing:
     rows: list[list[Cell]] = [
         ["loading", float(d), float(f)] for d, f in zip(depth, load, strict=True)
     ]
-    for line in unloading_lines(results):
+    unloading = list(unloading_lines(results))
+    for line in unloading:
         rows += [[line.name, float(d), float(f)] for d, f in zip(line.x, line.y, strict=True)]
     return Drawing(
         "Load and displacement",
         load_displacement(results),
         f"Normal force against indentation, up to {load.max():.4g} N at {depth.max():.4g} µm",
-        "The loading curve, and unloading curves from some of the depths.",
+        f"The loading curve{', and unloading curves from some of the depths' * bool(unloading)}.",
         Table("Curves", ["curve", "indentation (µm)", "force (N)"], rows),
     )
 
