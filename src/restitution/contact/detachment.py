@@ -103,10 +103,11 @@ def released_by_closure(edge: Edge, p: Array, work_of_adhesion: float, limit: fl
     """Select nodes to release by `crack-closure`, from the pressure `p` and the contact `edge`.
 
     Nodes are released until the energy release rate falls to the work of adhesion. `_recession`
-    estimates the distance by which each edge node must recede. This distance is the width of a
-    strip inside the smoothed outline. All nodes under tension in the strip are released. If the
-    strip is narrow or has no nodes under tension, single nodes under the largest tension are
-    released instead. On coarse grids, nodes whose tension exceeds `limit` (Pa) are also released.
+    estimates the distance by which each edge node must recede. The strip between the smoothed edge
+    of the contact and the receded edge has this distance as its width. All nodes under tension in
+    the strip are released. If the strip is narrow or has no nodes under tension, single nodes under
+    the largest tension are released instead. On coarse grids, nodes whose tension exceeds `limit`
+    (Pa) are also released.
     """
     tensile = edge.touching & (p < 0)
     fine = bool(np.count_nonzero(tensile) > _RESOLVED_RIM * edge.G.size)

@@ -330,12 +330,13 @@ def _with_increments(state: State, start: State | None) -> State:
 
 
 def _work_by_truncation(state: State, start: State | None) -> tuple[float, float, int]:
-    """Return the results of `work_by_force` for a truncated pressure without adhesion on approach.
+    """Return work, error and convolutions, as `work_by_force` does, for truncated pressures.
 
-    The work is computed in one of two ways. The first integrates the truncated force. The second
-    integrates the force that truncation removes, and subtracts this integral from the energy of the
-    elastic contact. The second integrand is zero below first yield. The second way is used while
-    the removed force is smaller than the remaining force, because it is then more accurate.
+    The approach must have no adhesion. The work is computed in one of two ways. The first
+    integrates the truncated force. The second integrates the force that truncation removes, and
+    subtracts this integral from the energy of the elastic contact. The second integrand is zero
+    below first yield. The second way is used while the removed force is smaller than the remaining
+    force, because it is then more accurate.
     """
     contact, indentation = state.contact, state.indentation
     p_y, area = contact.yield_pressure, contact.grid.cell_area

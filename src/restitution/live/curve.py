@@ -70,11 +70,11 @@ class LiveCurves:
             yield curve.maps.line(min(max(depth, 0), len(curve.maps) - 1))
 
     def beside(self, tab: str, shown: str, check: Callable[[], None]) -> Iterator[str]:
-        """Yield the curve of the smooth bodies, then the surface, for the last curve of `tab`.
+        """Yield what the page shows beside the last curve of `tab`.
 
-        The surface is left out if the page already shows it. `shown` is the hash of the heights of
-        the surface that the page shows. `check` raises an exception if the answer is no longer
-        wanted.
+        First comes the curve of the same bodies without roughness, then the surface. The surface is
+        left out if the page already shows it. `shown` is the hash of the heights of the surface
+        that the page shows. `check` raises an exception if the answer is no longer wanted.
         """
         curve = self._curves.get(tab)
         if curve is not None:

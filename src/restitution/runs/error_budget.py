@@ -56,7 +56,8 @@ from restitution.surfaces.refine import coarsen
 
 Row = dict[str, float]
 
-# Safety factor on the change of COR that the waves left out by the grid are expected to cause.
+# The grid leaves out short waves. The expected change of COR due to these waves is multiplied by
+# this safety factor.
 _BAND = 1.5
 # The fraction s (see the top of this file), interpolated between its values at 3 and at 7 nodes in
 # the median patch.

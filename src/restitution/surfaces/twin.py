@@ -69,10 +69,10 @@ def twin(scan: Surface, grid: Grid, seed: int) -> Surface:
 
     The provenance describes the waves left out (`removed_…`) and contains the statistics of the
     scan (`scan_…`). It also contains `spectrum_misfit`, the root mean square of the relative
-    difference between the spectra of twin and scan, in bands of a quarter octave. The twin is
-    divided into parts that are as large as the scan, and the spectra of at most `_PARTS` parts are
-    averaged. A twin smaller than the scan is compared as a whole. The weight of a band is the sum
-    of two fractions: its share of the mean square height and its share of the mean square slope.
+    difference between the spectra of twin and scan, in bands of a quarter octave. The spectrum of
+    the twin is averaged over at most `_PARTS` parts of the twin, each as large as the scan. A twin
+    smaller than the scan is compared as a whole. The weight of a band is the sum of two fractions:
+    its share of the mean square height and its share of the mean square slope.
 
     Raises `SurfaceError` for a scan that is flat or has fewer than 16 pixels along an axis, and for
     cells that are too large for any wave of the scan.

@@ -125,9 +125,9 @@ class PeriodicConvolution(Convolution):
     def __init__(self, symbol: Symbol, shape: tuple[int, int], device: Device = CPU) -> None:
         super().__init__(shape, shape, device)
         self._spectrum = _modes(symbol, shape, device)
-        # The kernel at lag (0, 0) is the sum over all modes. Along each axis, a wave number of the
-        # quadrant stands for itself and its negative. Zero and the Nyquist wave number (n even)
-        # have no negative counterpart and count once.
+        # The kernel at lag (0, 0) is the sum over all modes. Only modes with non-negative wave
+        # numbers are stored. So along each axis, a stored wave number stands for itself and its
+        # negative. Zero and the Nyquist wave number (n even) have no negative and count once.
         along = [1.0 + ((k > 0) & (2 * k != n)) for n in shape for k in [device.arange(n // 2 + 1)]]
         self.diagonal = float((along[1] @ self._spectrum) @ along[0])
         self._single_spectrum = self._spectrum.astype(np.float32)

@@ -48,9 +48,9 @@ _FULL_STEP_FRACTION = 0.8
 # First trial length, as a multiple of the preconditioned gradient. The first steps of a solve
 # typically have about this length. It is below 1 because bounds truncate these steps.
 _INITIAL_STEP = 0.3
-# After each step, the trial length is multiplied by the ratio of the optimal length to the trial
-# length. This ratio is limited to the range from _MIN_STEP to _MAX_STEP. The exponent _STEP_DAMPING
-# of the ratio damps oscillations of the optimal length from step to step.
+# After each step, the trial length is multiplied by ratio**_STEP_DAMPING. The ratio is the optimal
+# length divided by the trial length, limited to the range from _MIN_STEP to _MAX_STEP. The exponent
+# damps oscillations of the optimal length from step to step.
 _MIN_STEP, _MAX_STEP, _STEP_DAMPING = 0.1, 3.0, 0.5
 # If the trial length has decreased to this value, the preconditioned gradient is almost
 # perpendicular to the gradient. One step then follows the gradient itself.
