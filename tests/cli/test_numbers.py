@@ -48,6 +48,11 @@ COLUMNS = {
     "truncated": ("force_N", "loading_work_J", "restitution"),
     "adhesive": ("force_N", "pull_off_force_N", "restitution", "restitution_error"),
 }
+# Kernels and processors round differently, which changes the numbers by less than 1e-7. The two
+# numbers that depend on when unloading releases nodes change by up to 2e-5.
+ROUNDING = 1e-6
+ROUNDING_OF_RELEASE = 2e-4
+OF_RELEASE = ("adhesive pull_off_force_N", "adhesive restitution_error")
 
 
 def command(*arguments):
@@ -105,7 +110,8 @@ def test_numbers_have_not_moved(tmp_path, monkeypatch):
     found = compute(tmp_path)
     assert found.keys() == stored.keys()
     for name, value in stored.items():
-        assert found[name] == approx(value, rel=1e-6), name
+        rounding = ROUNDING_OF_RELEASE if name.startswith(OF_RELEASE) else ROUNDING
+        assert found[name] == approx(value, rel=rounding), name
 
 
 if __name__ == "__main__":
