@@ -8,7 +8,7 @@ import pytest
 from scipy.stats import ttest_1samp
 
 from restitution.case.case_file import parse_case
-from restitution.errors import DomainError
+from restitution.errors import DomainError, SurfaceError
 from restitution.results.schema import COLUMNS
 from restitution.results.writer import ResultsFolder
 from restitution.runs.ensemble import mean_rows, run_realisations
@@ -117,6 +117,19 @@ def test_when_all_fail_the_first_failure_is_raised_and_the_folder_taken_back(cas
     deep = case_text.replace('from = "20 nm"\nto = "300 nm"', 'from = "5 um"\nto = "9 um"')
     with pytest.raises(DomainError):
         ensemble(deep, tmp_path, 2)
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_missing_scan_ends_the_run_with_one_error(case_text, tmp_path):
+    before, after = case_text.split("[roughness]")[0], case_text.split("[grid]")[1]
+    scan = '[roughness]\nkind = "measured"\nfile = "scan.npy"\nrealisations = 3\n[grid]'
+    text = before + scan + after
+    said = []
+    with pytest.raises(SurfaceError, match="there is no such file"):
+        run_realisations(
+            parse_case(text), text, tmp_path, ResultsFolder(tmp_path / "out"), warn=said.append
+        )
+    assert said == []
     assert not (tmp_path / "out").exists()
 
 

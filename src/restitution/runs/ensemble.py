@@ -64,7 +64,8 @@ def run_realisations(
     `realisation-<n>`, and the curve of `out` contains the means (`mean_rows`). The seed of
     surface n is the seed of the case plus n − 1. For a scan without a seed, `place` (the part of
     the scan that is used) increases in the same way. If the run on a surface fails, its error is
-    recorded and the other runs continue. If all runs fail, the first error is raised. With
+    recorded and the other runs continue. If all runs fail, the first error is raised. If the first
+    surface cannot be made, for example because the scan is missing, no run starts. With
     `grid.refine = "auto"`, the first surface decides the grid of each depth for all surfaces
     (`refinement`).
     """
@@ -96,6 +97,7 @@ class _Ensemble:
 
     def compute(self) -> None:
         """Run the case on every surface, and estimate the errors due to grid and materials."""
+        self.case.realisation(0).surface(self.folder)  # end here if the scan cannot be read
         self.case = settled(self.case, self.folder, self.log.warn)
         for number in range(self.case.realisations):
             self._run(number)
