@@ -52,6 +52,21 @@ double max_magnitude(Rows<const T> values) {
 }
 
 template <class T>
+double dot(Rows<const T> a, Rows<const T> b) {
+    const auto some = [&](Index begin, Index end) {
+        double total = 0;
+        for (Index i = begin; i < end; ++i) {
+            const T *ai = a[i], *bi = b[i];
+#pragma omp simd reduction(+ : total)
+            for (Index j = 0; j < a.length; ++j) total += double(ai[j]) * bi[j];
+        }
+        return Sums{total};
+    };
+    return over_rows(some, a, b).first;
+}
+
+template <class T>
 void define_reductions(py::module_& module) {
     module.def("max_magnitude", &max_magnitude<T>);
+    module.def("dot", &dot<T>);
 }

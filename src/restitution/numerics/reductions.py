@@ -18,6 +18,7 @@ def max_magnitude(values: Array) -> float:
     return float(np.maximum(values.max(), -values.min()))
 
 
+@use_loop
 def dot(a: Array, b: Array) -> float:
     """Return Σ a b, summed in double precision."""
     # np.vdot would use threads, whose synchronisation takes longer than the products themselves.

@@ -27,6 +27,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from restitution.numerics.convolution.operators import Array, Convolution
+from restitution.numerics.reductions import dot
 
 # Function of the unknowns u that returns the potential φ of each node, and its derivatives φ′ and
 # φ″.
@@ -84,7 +85,7 @@ def minimise_locally(
     `converged` of the result is False; no exception is raised.
     """
     phi, slope, k = potential(u)
-    energy = 0.5 * _dot(p, u) + float(phi.sum())
+    energy = 0.5 * dot(p, u) + float(phi.sum())
     radius, negative, steps = math.inf, False, 0
     while True:
         r = p + slope
@@ -97,14 +98,14 @@ def minimise_locally(
         steps += 1
         x, Sx, at_edge, bent = _newton_step(K, r, k, energy, (radius, length), zero_mean=zero_mean)
         negative |= bent
-        predicted = _dot(r, x) + 0.5 * _dot(x, Sx + k * x)
-        size = math.sqrt(max(_dot(x, Sx), 0.0))
+        predicted = dot(r, x) + 0.5 * dot(x, Sx + k * x)
+        size = math.sqrt(max(dot(x, Sx), 0.0))
         new_p = p + Sx
         new_u = K(new_p)  # in double precision; the products within a step are in single precision
         phi, new_slope, new_k = potential(new_u)
-        new_energy = 0.5 * _dot(new_p, new_u) + float(phi.sum())
+        new_energy = 0.5 * dot(new_p, new_u) + float(phi.sum())
         change = new_energy - energy
-        rounding = abs(predicted) <= _ROUNDING * (abs(energy) + 0.5 * _dot(p, u))
+        rounding = abs(predicted) <= _ROUNDING * (abs(energy) + 0.5 * dot(p, u))
         if not (rounding or (predicted < 0 and change < _TAKEN * predicted)):
             radius = 0.3 * size
             continue
@@ -143,7 +144,7 @@ def _newton_step(
     rest = -r
     d = K(rest)
     z, Sd = np.empty_like(r), rest.copy()
-    rz = first = _dot(rest, d)
+    rz = first = dot(rest, d)
     # Solve more accurately as the gradient falls, for superlinear convergence.
     forcing = min(_FORCING, (first / max(abs(energy), 1e-300)) ** 0.25)
     inside = math.isinf(radius)  # no trust region yet
@@ -151,9 +152,9 @@ def _newton_step(
     for _ in range(_MOST_ITERATIONS):
         np.multiply(k, d, out=Hd)
         Hd += Sd
-        dHd = _dot(d, Hd)
+        dHd = dot(d, Hd)
         if not inside:
-            dSd, xSd = _dot(d, Sd), _dot(x, Sd)
+            dSd, xSd = dot(d, Sd), dot(x, Sd)
         bent = dHd <= 0
         a = math.inf if bent else rz / dHd
         along = 0.0 if bent or inside else xSx + a * (2 * xSd + a * dSd)
@@ -170,7 +171,7 @@ def _newton_step(
         if zero_mean:  # K ignores the mean, which would only increase rounding errors
             rest -= rest.mean()
         K.single_precision(rest, out=z)
-        before, rz = rz, _dot(rest, z)
+        before, rz = rz, dot(rest, z)
         if rz <= forcing**2 * first:
             break
         d *= rz / before
@@ -178,7 +179,3 @@ def _newton_step(
         Sd *= rz / before
         Sd += rest
     return x, Sx, False, False
-
-
-def _dot(a: Array, b: Array) -> float:
-    return float(np.vdot(a, b))
