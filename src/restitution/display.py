@@ -42,8 +42,16 @@ def quantity(value: float | None, unit: str) -> str:
     step = 6 if unit == "m²" else 3  # prefixes of areas are squared: 1 µm² = 1e-12 m²
     rounded = float(f"{value:.4g}")
     order = math.floor(math.log10(abs(rounded)) / step + 1e-12)
-    order = max(min(_PREFIXES), min(max(_PREFIXES), order))
+    smallest = -3 if unit == "m" else min(_PREFIXES)  # 0.3 nm, not 300 pm
+    order = max(smallest, min(max(_PREFIXES), order))
     return f"{value / 10.0 ** (step * order):.4g} {_PREFIXES[order]}{unit}"
+
+
+def duration(seconds: float) -> str:
+    """Format a time for people: "20 s", "3 min", "5 h"."""
+    if seconds < 100:
+        return f"{max(seconds, 1.0):.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 6000 else f"{seconds / 3600:.0f} h"
 
 
 def counted(number: int, noun: str) -> str:

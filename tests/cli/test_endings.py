@@ -217,14 +217,14 @@ def test_interruption_keeps_what_was_computed(case_text, tmp_path, sent, status)
     assert not list(out.glob(".*.part"))
 
 
-@pytest.mark.parametrize("where", ["adhesive_nodes", "add"])
+@pytest.mark.parametrize("where", ["adhesive_spacing", "add"])
 def test_interruption_between_what_belongs_to_a_row(case_text, tmp_path, monkeypatch, where):
     """The third depth is computed, and is either kept or not."""
     from restitution.case.case_file import parse_case
     from restitution.results.writer import ResultsFolder
     from restitution.runs import run
 
-    owner = run if where == "adhesive_nodes" else ResultsFolder
+    owner = run if where == "adhesive_spacing" else ResultsFolder
     calls, real = [], getattr(owner, where)
 
     def interrupted(*args):

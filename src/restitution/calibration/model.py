@@ -25,12 +25,7 @@ from restitution.case.case_file import parse_case
 from restitution.case.derived import deepest_indentation
 from restitution.case.schema import UnloadingTable
 from restitution.collision import collide
-from restitution.contact.checks.resolution import (
-    ADHESIVE_NODES,
-    adhesive_nodes,
-    median_patch,
-    resolves,
-)
+from restitution.contact.checks.resolution import resolves_contact
 from restitution.contact.contact import Contact
 from restitution.contact.loading import solve
 from restitution.contact.model_error import model_error
@@ -143,13 +138,12 @@ def _row(state: State, unloading: UnloadingTable) -> tuple[float, ...]:
     a flag that is true if the grid resolves the contact, and the depth (m).
     """
     collision = collide(state, method=unloading.method, tolerance=unloading.restitution_error)
-    fine = adhesive_nodes(state) >= ADHESIVE_NODES
     return (
         collision.impact_velocity or 0.0,
         collision.unloading_work / collision.loading_work,
         collision.restitution_error,
         model_error(state, collision.restitution),
-        fine and resolves(median_patch(state.patch_sizes())),
+        resolves_contact(state),
         state.indentation,
     )
 

@@ -61,18 +61,21 @@ def check(
         no_range,
         require_possible,
     )
+    from restitution.runs.refinement import least_refined
 
-    read, cases = _read(case)
+    given, cases = _read(case)
+    warnings: list[str] = []
     with naming(case), errors.status("making the surface"):
+        read = least_refined(given, case.parent, warnings.append)
         contact = read.contact(case.parent)
-        table = _table(read, contact)
+        table = _table(read, contact, auto=given.grid.refine == "auto")
     print_numbers(table)
     if (from_where := read.yielding().source) not in ("given", "elastic"):
         say(f"The yield pressure of the contact comes from {from_where}.")
     deepest = deepest_indentation(read)
     require_possible(contact, deepest)
     with errors.status("checking the surface"):
-        warnings = input_warnings(contact, deepest, read.prescribed)
+        warnings += input_warnings(contact, deepest, read.prescribed)
         if read.interface.adhesion is None and contact.adhesive:
             warnings += no_range(contact)
     for warning in warnings:
@@ -101,7 +104,7 @@ def _read(path: Path) -> tuple[Case, int]:
         return parse_case(study.cases[0].text), len(study.cases)
 
 
-def _table(case: Case, contact: Contact) -> Table:
+def _table(case: Case, contact: Contact, *, auto: bool) -> Table:
     from restitution.case.derived import derived_quantities
     from restitution.numerics.memory import available, in_words
     from restitution.surfaces import describe
@@ -109,8 +112,8 @@ def _table(case: Case, contact: Contact) -> Table:
     table = Table("", Column(justify="right"), "", box=None, show_header=False)
     nx, ny = contact.grid.nodes
     hx, hy = contact.grid.spacing
-    auto = ", before refine" if case.grid.refine == "auto" else ""
-    table.add_row("grid", f"{nx} x {ny}", f"nodes of {1e6 * hx:.6g} um x {1e6 * hy:.6g} um{auto}")
+    more = ', or more (refine = "auto")' if auto else ""
+    table.add_row("grid", f"{nx} x {ny}", f"nodes of {1e6 * hx:.6g} um x {1e6 * hy:.6g} um{more}")
     provenance = contact.surface.provenance
     kind = provenance.get("kind") or provenance["source"]
     rms = describe(contact.surface)["Sq_m"] or 0.0
@@ -126,5 +129,5 @@ def _table(case: Case, contact: Contact) -> Table:
             label += ", estimated"
         table.add_row(label, "-" if value is None else f"{scale * value:.5g}", unit)
     needed = in_words(case.run_bytes(contact.grid))
-    table.add_row("memory of a run, at most", needed, f"of {in_words(available())}{auto}")
+    table.add_row("memory of a run, at most", needed, f"of {in_words(available())}{more}")
     return table

@@ -11,7 +11,7 @@ shortened until this uncertainty is small.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -32,7 +32,7 @@ from restitution.contact.contact import Contact
 from restitution.contact.plastic_work import plastic_work
 from restitution.contact.state import State
 from restitution.errors import NotConvergedError
-from restitution.numerics.box import union
+from restitution.numerics.box import reframe, shape_of, union
 
 # In a step without a jump, the work of the force must equal the change of energy. This is the
 # largest accepted difference, as a fraction of the reference energy `_scale`.
@@ -51,6 +51,10 @@ _UNDER_TENSION = 0.15
 _LEAST_STEP = 1e-5
 _MOST_STEPS = 5000
 _FARTHEST = 0.02  # unloading ends where the tension is below this fraction of the largest tension
+
+# States are compared with those of a known unloading at this many indentations. They are the same
+# if their displacements differ by at most this fraction of z₀.
+_MEETINGS, _SAME = 4, 1e-3
 
 # When the box (the part of the grid that is solved) must grow, it is made large enough for about
 # this multiple of the next indentation. So it seldom grows.
@@ -128,23 +132,73 @@ def step_cohesive(state: CohesiveState, indentation: float, *, residual: float) 
     return replace(_move(state, indentation, residual), is_first_loading=False)
 
 
-def separate_cohesive(state: CohesiveState, *, accuracy: float = ACCURACY) -> Iterator[State]:
+def separate_cohesive(
+    state: CohesiveState, *, accuracy: float = ACCURACY, known: Sequence[State] = ()
+) -> Iterator[State]:
     """Yield `state` and the states of unloading until the bodies attract each other only weakly.
 
     In the last state the bodies are out of contact, and at this and larger distances no other
     equilibrium exists. The rest of the separation is therefore reversible. Its work is minus the
     potential energy of the last state.
+
+    `known` are states of another unloading of the same contact, from a smaller indentation. If
+    neither has yielded and both come to the same equilibrium, the states below it are taken from
+    `known`.
     """
     yield state
     tension = max(0.0, -state.force)
-    path = follow(
-        replace(state, is_first_loading=False), -math.inf, residual=1e-8, accuracy=accuracy
-    )
-    for new in path:
+    state = replace(state, is_first_loading=False)
+    shared = _shared(state, known)
+    for meeting in shared[:: max(1, len(shared) // _MEETINGS)]:
+        for new in follow(state, meeting.indentation, residual=1e-8, accuracy=accuracy):
+            tension = max(tension, -new.force)
+            state = new
+            yield new
+        if _is_same(state, meeting):
+            yield from _continued(state, shared[shared.index(meeting) :])
+            return
+    for new in follow(state, -math.inf, residual=1e-8, accuracy=accuracy):
         tension = max(tension, -new.force)
         yield new
         if new.contact_nodes == 0 and -new.force <= _FARTHEST * tension and is_unique(new):
             return
+
+
+def _shared(state: CohesiveState, known: Sequence[State]) -> list[CohesiveState]:
+    """The states of `known` in contact that unloading from `state` may pass through."""
+    path = [each for each in known if isinstance(each, CohesiveState)]
+    if not path or path[0].contact is not state.contact:
+        return []
+    if state.plastic_displacement.any() or path[-1].plastic_displacement.any():
+        return []
+    return path if path[0].indentation < state.indentation else []
+
+
+def _is_same(state: CohesiveState, other: CohesiveState) -> bool:
+    """Whether two states at one indentation are the same equilibrium."""
+    box = union(state.box, other.box)
+    assert box is not None
+    here, there = (reframe(each.box_displacement, each.box, box) for each in (state, other))
+    inside = reframe(np.ones(shape_of(state.box), dtype=bool), state.box, box)
+    inside &= reframe(np.ones(shape_of(other.box), dtype=bool), other.box, box)
+    apart = float(np.abs(here - there)[inside].max(initial=0.0))
+    return apart <= _SAME * state.contact.equilibrium_separation
+
+
+def _continued(state: CohesiveState, path: Sequence[CohesiveState]) -> Iterator[CohesiveState]:
+    """Yield `path` after its first state, with the losses and errors of `state` added."""
+    first = path[0]
+    for new in path[1:]:
+        yield with_interaction(
+            replace(
+                new,
+                adhesive_loss=state.adhesive_loss + new.adhesive_loss - first.adhesive_loss,
+                jumps=state.jumps + new.jumps - first.jumps,
+                unaccounted=state.unaccounted + new.unaccounted - first.unaccounted,
+                work_error=state.work_error + new.work_error - first.work_error,
+                convolutions=0,
+            )
+        )
 
 
 @dataclass(frozen=True)

@@ -118,11 +118,11 @@ def _unload(
     """Generate `state` and the states of unloading down to separation.
 
     `finer` multiplies the smallest number of steps. `known` are states that may be reused, as in
-    `separate`. A cohesive contact uses only `tolerance`.
+    `separate`. A cohesive contact uses only `tolerance` and `known`.
     """
     contact = state.contact
     if isinstance(state, CohesiveState):
-        yield from separate_cohesive(state, accuracy=_UNACCOUNTED * tolerance)
+        yield from separate_cohesive(state, accuracy=_UNACCOUNTED * tolerance, known=known)
         return
     other = SharedUnloading.of(state, known)
     yield state

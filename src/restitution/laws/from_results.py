@@ -182,7 +182,7 @@ def _points(run: RunResults) -> list[Point]:
                 indentation=row["max_indentation_m"],
                 force=row["force_N"],
                 pull_off_force=None if math.isnan(pull_off) else pull_off,
-                resolved=bool(row["resolved"] and row["adhesion_resolved"]),
+                resolved=bool(row["resolved"]),
             )
         )
     return found

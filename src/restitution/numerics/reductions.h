@@ -51,12 +51,13 @@ double max_magnitude(Rows<const T> values) {
     return over_rows(some, values).value();
 }
 
-template <class T>
-double dot(Rows<const T> a, Rows<const T> b) {
+template <class A, class B>
+double dot(Rows<const A> a, Rows<const B> b) {
     const auto some = [&](Index begin, Index end) {
         double total = 0;
         for (Index i = begin; i < end; ++i) {
-            const T *ai = a[i], *bi = b[i];
+            const A* ai = a[i];
+            const B* bi = b[i];
 #pragma omp simd reduction(+ : total)
             for (Index j = 0; j < a.length; ++j) total += double(ai[j]) * bi[j];
         }
@@ -68,5 +69,6 @@ double dot(Rows<const T> a, Rows<const T> b) {
 template <class T>
 void define_reductions(py::module_& module) {
     module.def("max_magnitude", &max_magnitude<T>);
-    module.def("dot", &dot<T>);
+    module.def("dot", &dot<T, float>);
+    module.def("dot", &dot<T, double>);
 }

@@ -11,7 +11,7 @@ from typing import Any
 
 import xarray as xr
 
-from restitution.contact.checks.resolution import median_patch, resolves
+from restitution.contact.checks.resolution import median_patch, resolves_contact
 from restitution.contact.cohesive import CohesiveState
 from restitution.contact.perimeter import corrected_area
 from restitution.contact.state import State
@@ -42,7 +42,7 @@ COLUMNS = {
     "contact_patches": Column("contact_patches", "1", "contact patches (nodes joined by an edge)"),
     "largest_patch_nodes": Column("largest_patch_nodes", "1", "nodes in the largest patch"),
     "median_patch_nodes": Column("median_patch_nodes", "1", _PATCH),
-    "resolved": Column("resolved", "1", "the grid resolves the median patch", flag=True),
+    "resolved": Column("resolved", "1", "the grid resolves patches and adhesion", flag=True),
     "residual": Column("residual", "1", "largest violation of the contact conditions"),
     "convolutions": Column("convolutions", "1", "number of convolutions in the solution"),
 }
@@ -98,7 +98,7 @@ def periodic_row(state: State) -> dict[str, float]:
         patches.size,
         int(patches[0]) if patches.size else 0,
         median,
-        resolves(median),
+        resolves_contact(state),
         state.residual,
         state.convolutions,
     )

@@ -26,10 +26,9 @@ import xarray as xr
 
 from restitution.collision import Collision
 from restitution.contact.checks.resolution import (
-    ADHESIVE_NODES,
-    adhesive_nodes,
     median_patch,
-    resolves,
+    resolves_adhesion,
+    resolves_contact,
 )
 from restitution.contact.model_error import model_error
 from restitution.contact.state import State
@@ -80,9 +79,9 @@ def curve_row(
         collision.separation_indentation + touch,
         collision.restitution_error,
         collision.sticks,
-        adhesive_nodes(state) >= ADHESIVE_NODES,
+        resolves_adhesion(state),
         median,
-        resolves(median),
+        resolves_contact(state),
         *(math.nan,) * 4,  # filled in by `runs.error_budget`
         model_error(state, collision.restitution),
         refine,

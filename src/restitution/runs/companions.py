@@ -24,7 +24,8 @@ from restitution.collision import UnloadingMethod, collide
 from restitution.contact.bodies import Pair
 from restitution.contact.cohesive import COMPANION
 from restitution.contact.contact import Contact, smooth
-from restitution.contact.path import loading_path, unloading_path
+from restitution.contact.loading import solve
+from restitution.contact.path import unloading_path
 from restitution.contact.state import State
 from restitution.errors import CaseError, DomainError, RestitutionError
 from restitution.runs.log import Say, ignore
@@ -99,6 +100,7 @@ def _curve_of(
     works: list[float] = []
     returned: list[float] = []
     back: list[State] = []
+    state: State | None = None
     before = contacts[0]
     for contact, depth in zip(
         (contacts[0], *contacts, contacts[-1]),
@@ -106,9 +108,10 @@ def _curve_of(
         strict=True,
     ):
         if contact != before:
-            before, back = contact, []
+            before, back, state = contact, [], None
         try:
-            (state,) = loading_path(contact, [depth])
+            # Only the path of a cohesive contact is long enough to be worth continuing.
+            state = solve(contact, depth, start=state if contact.cohesive else None)
             if contact.adhesive and method == "path":
                 back = list(unloading_path(state, tolerance=tolerance, known=back))
             collision = collide(state, back or None, method=method, tolerance=tolerance)

@@ -6,13 +6,14 @@ import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+from restitution.case.schema import FACTORS
 from restitution.contact.checks.edge import EdgeReachedError, edge_values, edges_in_words
 from restitution.contact.checks.finding import Code, Finding
 from restitution.contact.checks.inputs import doubtful, impossible
 from restitution.contact.checks.resolution import (
-    ADHESIVE_NODES,
     NODES_PER_PATCH,
     NODES_PER_RADIUS,
+    divisions,
     predicted_radius,
 )
 from restitution.contact.cohesive import needed_spacing
@@ -157,16 +158,13 @@ def message(found: Finding, prescribed: str = "indentation") -> str:
                 "finer scan, a larger particle or a deeper contact"
             )
         case "range-unresolved":
+            times = divisions(found["spacing"], found["needed"])
             return (
-                f"grid.spacing: {_nm(found['spacing'])} is too coarse for the range of the "
-                f'attraction; interface.adhesion = "cohesive" needs {_nm(found["needed"])} or less '
-                "(0.3 times the smaller of E* z0^2/w and sqrt(R* z0), with the work of adhesion w "
-                "and the equilibrium separation z0): use a finer grid, "
-                + (
-                    "or grid.refine"
-                    if found["periodic"]
-                    else 'grid.refine (or "auto"), or adhesion = "jkr"'
-                )
+                f"grid.spacing: cells of {_nm(found['spacing'])} are too coarse for the range of "
+                f'the attraction; interface.adhesion = "cohesive" needs {_nm(found["needed"])} or '
+                "less (0.3 times the smaller of E* z0^2/w and sqrt(R* z0), with the work of "
+                f"adhesion w and the equilibrium separation z0): multiply grid.refine by {times}"
+                + ("" if found["periodic"] else ', or set interface.adhesion = "jkr"')
             )
         case "edge-reached":
             wide, long = (1e6 * edge for edge in found["size"])
@@ -246,15 +244,17 @@ def message(found: Finding, prescribed: str = "indentation") -> str:
                 "grid (grid.refine)"
             )
         case "adhesion-unresolved":
-            why = (
-                "the pull-off radius of its asperities is below "
-                f"{ADHESIVE_NODES} nodes, at worst {found['nodes']:.2g}"
-            )
-            if found["nodes"] == 0:  # `adhesive_nodes` returns 0 only for cohesive contacts
-                why = "the grid is too coarse for the range of the attraction at its asperities"
             return (
                 f"adhesion is not resolved at {found['few']} of {found['depths']} depths "
-                f"(adhesion_resolved is false): {why}; use a finer grid"
+                f"({_nm(found['from'])} to {_nm(found['to'])}; adhesion_resolved is false): cells "
+                f"of {_nm(found['spacing'])} are too large for the adhesion of the asperities in "
+                f"contact, which needs {_nm(found['needed'])} or less"
+                + (
+                    f"; set grid.refine = {found['refine']}"
+                    if found["refine"] <= FACTORS[-1]
+                    else ", finer than grid.refine allows; leave out short waves "
+                    "(roughness.shortest), or use a smaller grid.spacing"
+                )
             )
 
 

@@ -2,73 +2,100 @@
 
 from __future__ import annotations
 
+import math
+import time
 from bisect import bisect_left
-from functools import partial
 from pathlib import Path
 
 from restitution.case.case import Case
 from restitution.case.schema import FACTORS
-from restitution.contact.checks.resolution import NODES_PER_PATCH, median_patch
-from restitution.contact.cohesive import resolves_range
+from restitution.contact.checks.resolution import (
+    NODES_PER_PATCH,
+    adhesive_spacing,
+    divisions,
+    median_patch,
+    resolves_adhesion,
+)
+from restitution.contact.cohesive import coarsest_spacing, needed_spacing, resolves_range
 from restitution.contact.contact import Contact
+from restitution.contact.state import State
+from restitution.display import duration, quantity
 from restitution.errors import DomainError, NotConvergedError
+from restitution.numerics.box import shape_of
+from restitution.numerics.grid import Grid
+from restitution.numerics.memory import available
 from restitution.runs.depths import load_to
 from restitution.runs.log import Say, ignore
 from restitution.runs.messages import no_range
+from restitution.surfaces.refine import divided
 
 # Largest number of nodes of a grid that "auto" tries. Such a grid takes a few minutes and about
 # 2 GiB.
 MOST_NODES = 2**24
+# The same for a contact with an attraction of finite range, and its largest number of nodes near
+# the contact, which are solved.
+MOST_COHESIVE_NODES, MOST_SOLVED_NODES = 2**22, 2**20
 # Safety factor on the number of nodes that a patch needs, because other surfaces of an ensemble
 # may have smaller patches.
 _MARGIN = 1.5
+# Time of a solve on cells half as large, divided by that on the present cells.
+_SLOWER = 4.8
+_UNITS = {"indentation": "m", "load": "N", "impact": "m/s", "pressure": "Pa"}
 
 
 def settled(case: Case, folder: Path, warn: Say = ignore) -> Case:
     """Replace `grid.refine = "auto"` in `case` by a factor for each depth.
 
     Each depth gets the coarsest grid on which half of the contact nodes lie in patches of at least
-    1.5 times `NODES_PER_PATCH` nodes. In an ensemble, the first surface decides. Deeper contacts
-    have larger patches, so bisection finds the shallowest depth that a grid resolves. If no grid of
-    up to `MOST_NODES` nodes resolves a depth, the depth gets the finest grid, and `warn` is called.
-    Raises the errors of `solve`.
+    1.5 times `NODES_PER_PATCH` nodes and that resolves adhesion at the asperities in contact. In
+    an ensemble, the first surface decides. Deeper contacts have larger patches, so bisection finds
+    the shallowest depth that a grid resolves. If no affordable grid resolves a depth, the depth
+    gets the finest affordable one, and `warn` is called. If the case does not state its model of
+    adhesion, it is `cohesive` if an affordable grid resolves the range of the attraction. Raises
+    the errors of `solve`.
     """
     if case.grid.refine != "auto":
         return case
+    case = _with_affordable_adhesion(case, folder, warn)
     depths = case.depths()
-    factors: list[int] = []  # the factors found so far belong to the largest depths
-    finest, why, nodes = 1, "", (1, 1)
+    factors: list[int] = []  # the factors so far belong to the largest depths
+    level = _Level(case.refined(1), folder)
+    finest, why = level, ""
     for factor in FACTORS:
-        if factor > 1 and factor**2 * nodes[0] * nodes[1] > MOST_NODES:
-            why = f"the next grid would have {factor * nodes[0]} x {factor * nodes[1]} nodes"
-            break
-        finer = case.refined(factor)
-        contact = finer.realisation(0).contact(folder)
-        if factor == 1:
-            nodes = contact.grid.nodes
-        finest, why = factor, f"{factor} is the largest refine"
-        if contact.cohesive and not resolves_range(contact):
+        if factor > 1:
+            if why := level.beyond(2):
+                break
+            level = _Level(case.refined(factor), folder)
+        finest, why = level, f"{factor} is the largest refine"
+        if not level.resolves_range:
             continue
         left = depths[: len(depths) - len(factors)]
-        first = bisect_left(left, True, key=partial(_resolves, finer, contact))
+        first = bisect_left(left, True, key=level.resolves)
         factors = [factor] * (len(left) - first) + factors
         if first == 0:
             break
-    if unresolved := len(depths) - len(factors):
-        if case.indentation:
-            quantity, unit, scale = "indentation", "nm", 1e9
-        else:
-            quantity, unit, scale = ("load", "N", 1.0) if case.load else ("velocity", "m/s", 1.0)
-        first_depth, last_depth = (f"{scale * depths[k]:.4g}" for k in (0, unresolved - 1))
-        where = f"at {first_depth}" if unresolved == 1 else f"from {first_depth} to {last_depth}"
-        warn(
-            f'grid.refine = "auto" stopped at {finest} ({why}). This grid does not resolve the '
-            f"contact {where} {unit}: half of the contact is in patches of fewer than "
-            f"{_MARGIN * NODES_PER_PATCH:.0f} nodes; begin with a larger {quantity}, or leave out "
-            "short waves (roughness.shortest)"
-        )
-    found = [finest] * unresolved + factors
-    return case.refined(found[0] if len(set(found)) == 1 else tuple(found))
+    unresolved = depths[: len(depths) - len(factors)]
+    if unresolved:
+        warn(finest.unresolved(unresolved, why))
+    chosen = [finest.case.grid.factor] * len(unresolved) + factors
+    return case.refined(chosen[0] if len(set(chosen)) == 1 else tuple(chosen))
+
+
+def least_refined(case: Case, folder: Path, warn: Say = ignore) -> Case:
+    """Replace `grid.refine = "auto"` by the smallest factor that resolves the range of adhesion.
+
+    Nothing is solved, so a run may choose larger factors. The factor is 1 if no affordable grid
+    resolves the range, and for other contacts.
+    """
+    if case.grid.refine != "auto":
+        return case
+    case = _with_affordable_adhesion(case, folder, warn)
+    contact = case.refined(1).realisation(0).contact(folder)
+    times = divisions(max(contact.grid.spacing), needed_spacing(contact)) if contact.cohesive else 1
+    finer = divided(contact.grid, times)
+    if times == 1 or not _is_affordable(case, finer, needed_spacing(contact)):
+        return case.refined(1)
+    return case.refined(times)
 
 
 def with_chosen_adhesion(case: Case, contact: Contact, warn: Say = ignore) -> Case:
@@ -81,16 +108,130 @@ def with_chosen_adhesion(case: Case, contact: Contact, warn: Say = ignore) -> Ca
         return case
     for line in no_range(contact):
         warn(line)
-    interface = case.interface.model_copy(update={"adhesion": contact.adhesion})
+    return _with_adhesion(case, contact.adhesion)
+
+
+class _Level:
+    """The contact of `case` on one grid, and its states at the depths tried so far."""
+
+    def __init__(self, case: Case, folder: Path) -> None:
+        self.case, self.contact = case, case.realisation(0).contact(folder)
+        self._states: dict[float, State | None] = {}
+        self._seconds = 0.0
+
+    @property
+    def resolves_range(self) -> bool:
+        """Whether the cells resolve the range of a cohesive contact; true for other contacts."""
+        return not self.contact.cohesive or resolves_range(self.contact)
+
+    def resolves(self, depth: float) -> bool:
+        """Whether the grid resolves the contact at `depth`, one of the depths of the case."""
+        try:
+            state = self._state(depth)
+        except DomainError:  # the contact reaches the edge; the run will report this
+            return True
+        return state is not None and _has_patches(state) and resolves_adhesion(state)
+
+    def beyond(self, times: int) -> str:
+        """Why cells smaller by the factor `times` are not affordable; empty if they are."""
+        grid = divided(self.contact.grid, times)
+        nx, ny = grid.nodes
+        wide = f"the next grid would have {nx} x {ny} nodes"
+        if not self.contact.cohesive:
+            return wide if nx * ny > MOST_NODES else ""
+        near = [math.prod(shape_of(state.box)) for state in self._states.values() if state]
+        if nx * ny > MOST_COHESIVE_NODES or times**2 * max(near, default=0) > MOST_SOLVED_NODES:
+            return wide + self._cost(times)
+        return wide if self.case.run_bytes(grid) > available() else ""
+
+    def unresolved(self, depths: list[float], why: str) -> str:
+        """Say that the grid does not resolve `depths` (of the case), and what would."""
+        key = self.case.prescribed
+        first, last = (quantity(depth, _UNITS[key]) for depth in (depths[0], depths[-1]))
+        where = f"at {first}" if first == last else f"from {first} to {last}"
+        name = "velocity" if key == "impact" else key
+        return (
+            f'grid.refine = "auto" stopped at {self.case.grid.factor} ({why}). This grid does not '
+            f"resolve the contact {where}: {'; '.join(self._reasons(depths))}; begin with a larger "
+            f"{name}, or leave out short waves (roughness.shortest)"
+        )
+
+    def _reasons(self, depths: list[float]) -> list[str]:
+        states = [state for depth in depths if (state := self._states.get(depth)) is not None]
+        reasons = []
+        if not self.resolves_range or not all(map(resolves_adhesion, states)):
+            needed = min(map(adhesive_spacing, states), default=needed_spacing(self.contact))
+            reasons.append(f"adhesion needs {self._grid_of(needed)}")
+        if self.resolves_range and (not states or not all(map(_has_patches, states))):
+            reasons.append(
+                "half of the contact is in patches of fewer than "
+                f"{_MARGIN * NODES_PER_PATCH:.0f} nodes"
+            )
+        return reasons
+
+    def _grid_of(self, spacing: float) -> str:
+        """Describe the grid with cells of `spacing` (m) or less, and what it costs."""
+        times = divisions(max(self.contact.grid.spacing), spacing)
+        nx, ny = divided(self.contact.grid, times).nodes
+        refine = times * self.case.grid.factor
+        return (
+            f"cells of {quantity(spacing, 'm')} or less (grid.refine = {refine}, {nx} x {ny} "
+            f"nodes{self._cost(times)})"
+        )
+
+    def _cost(self, times: int) -> str:
+        """Time of solving the depths on cells smaller by the factor `times`; empty if unknown."""
+        if not self._states:
+            return ""
+        for_all = self._seconds * len(self.case.depths()) / len(self._states)
+        return f", about {duration(for_all * _SLOWER ** math.log2(times))} without errors"
+
+    def _state(self, depth: float) -> State | None:
+        """The state at `depth`; None if it cannot be solved (too few nodes in contact)."""
+        if depth not in self._states:
+            shallower = [d for d, state in self._states.items() if d < depth and state is not None]
+            start = self._states[max(shallower)] if shallower else None
+            began = time.perf_counter()
+            try:
+                self._states[depth] = load_to(self.case, self.contact, depth, start)
+            except NotConvergedError:
+                self._states[depth] = None
+            self._seconds += time.perf_counter() - began
+        return self._states[depth]
+
+
+def _has_patches(state: State) -> bool:
+    return median_patch(state.patch_sizes()) >= _MARGIN * NODES_PER_PATCH
+
+
+def _with_adhesion(case: Case, adhesion: str) -> Case:
+    interface = case.interface.model_copy(update={"adhesion": adhesion})
     return case.model_copy(update={"interface": interface})
 
 
-def _resolves(case: Case, contact: Contact, depth: float) -> bool:
-    """Whether the grid of `contact` resolves the contact at a depth of `case`."""
-    try:
-        patches = load_to(case, contact, depth).patch_sizes()
-    except DomainError:  # the contact reaches the edge; the run will report this
-        return True
-    except NotConvergedError:  # with too few contact nodes, force or work may jump
-        return False
-    return median_patch(patches) >= _MARGIN * NODES_PER_PATCH
+def _with_affordable_adhesion(case: Case, folder: Path, warn: Say) -> Case:
+    """Choose `cohesive` for a case that leaves this open, if an affordable grid resolves it.
+
+    Otherwise choose `jkr`, and `warn` if it neglects a range of the attraction that matters.
+    """
+    interface = case.interface
+    if interface.adhesion is not None or not interface.adhesive_energy or interface.needs_jkr:
+        return case
+    grid = case.grid.grid() or case.refined(1).realisation(0).surface(folder).grid
+    cohesive = _with_adhesion(case, "cohesive")
+    z0 = interface.equilibrium_separation
+    needed = coarsest_spacing(case.pair(), interface.adhesive_energy, z0)
+    if any(_is_affordable(cohesive, divided(grid, n), needed) for n in FACTORS):
+        return cohesive
+    jkr = _with_adhesion(case, "jkr")
+    for line in no_range(jkr.realisation(0).contact(folder)):
+        warn(line)
+    return jkr
+
+
+def _is_affordable(case: Case, grid: Grid, needed: float) -> bool:
+    return (
+        max(grid.spacing) <= needed
+        and math.prod(grid.nodes) <= MOST_COHESIVE_NODES
+        and case.run_bytes(grid) <= available()
+    )

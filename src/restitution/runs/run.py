@@ -15,7 +15,7 @@ from restitution.case.derived import deepest_indentation, derived_quantities
 from restitution.case.omissions import omissions
 from restitution.collision import Collision, collide
 from restitution.contact.checks.resolution import (
-    adhesive_nodes,
+    adhesive_spacing,
     unresolved_adhesion,
     unresolved_patches,
 )
@@ -23,6 +23,7 @@ from restitution.contact.cohesive import CohesiveState
 from restitution.contact.contact import FULL_CONSTRAINT, Contact
 from restitution.contact.state import State
 from restitution.contact.unloading_curve import unloading_curve
+from restitution.display import duration
 from restitution.errors import DomainError, RestitutionError
 from restitution.numerics.convolution.device import current
 from restitution.numerics.kernels import instruction_set
@@ -59,6 +60,8 @@ FULL_PRESSURE = (
     "begin to yield at about 1.6 times the yield strength"
 )
 
+# The time of a run grows with the inverse of the cell size to this power.
+_GROWTH = 2.3
 # Limits above which a warning is issued.
 _VELOCITY = 1e-3  # relative error of a prescribed impact velocity
 _IMPRECISE = 0.02  # numerical error of COR
@@ -73,7 +76,8 @@ class _Run(RunLog):
     deepest: State | None = None
     loading_work_errors: list[float] = field(default_factory=list)
     asked: list[float] = field(default_factory=list)
-    adhesive_nodes: list[float] = field(default_factory=list)
+    spacings: list[float] = field(default_factory=list)
+    adhesive_spacings: list[float] = field(default_factory=list)
     band_errors: list[float] = field(default_factory=list)
     depth_seconds: list[float] = field(default_factory=list)
     unloading_checks: list[dict[str, float]] = field(default_factory=list)
@@ -190,7 +194,8 @@ def _keep(
     run.last_unloading = back
     with hold_signals():  # an interruption leaves a complete row or no row
         run.asked.append(depth.asked)
-        run.adhesive_nodes.append(adhesive_nodes(state))
+        run.spacings.append(max(state.contact.grid.spacing))
+        run.adhesive_spacings.append(adhesive_spacing(state))
         run.loading_work_errors.append(state.work_error / max(abs(state.loading_work), 1e-300))
         out.add(state, collision, depth.refine, depth.touch)
         run.deepest = state
@@ -281,10 +286,8 @@ def _result_warnings(case: Case, contact: Contact, out: ResultsFolder, run: _Run
     """Yield the warnings about the results of the run."""
     depths = [row["max_indentation_m"] for row in out.rows]
     patches = [row["median_patch_nodes"] for row in out.rows]
-    # If the last row could not be written, `adhesive_nodes` has one value more than `out.rows`.
-    nodes = run.adhesive_nodes[: len(depths)]
-    unresolved = unresolved_patches(depths, patches) + unresolved_adhesion(depths, nodes)
-    yield from map(message, unresolved)
+    yield from map(message, unresolved_patches(depths, patches))
+    yield from _unresolved_adhesion(case, contact, out, run)
     yield from band_warning(contact.surface, run.band_errors)
     if run.errors:
         yield from interrupted_errors(case, out.rows, run.status)
@@ -292,6 +295,21 @@ def _result_warnings(case: Case, contact: Contact, out: ResultsFolder, run: _Run
     yield from _velocities_missed(out, case, run.asked)
     if not contact.adhesive:
         yield from _unbalanced(run.unloading_checks)
+
+
+def _unresolved_adhesion(
+    case: Case, contact: Contact, out: ResultsFolder, run: _Run
+) -> Iterator[str]:
+    """Yield a warning if cells are too large for adhesion, with the finer grid and its cost."""
+    rows = out.rows
+    spacings, needed = (part[: len(rows)] for part in (run.spacings, run.adhesive_spacings))
+    depths = [row["max_indentation_m"] for row in rows]
+    factor = case.grid.factor
+    for found in unresolved_adhesion(depths, spacings, needed, factor * max(contact.grid.spacing)):
+        nx, ny = (n * found["refine"] // factor for n in contact.grid.nodes)
+        finer = max(1.0, found["spacing"] / found["needed"])
+        cost = duration(run.seconds * finer**_GROWTH)
+        yield f"{message(found)} ({nx} x {ny} nodes, about {cost})"
 
 
 def _imprecise(out: ResultsFolder, case: Case) -> Iterator[str]:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from restitution.contact.bodies import Pair
 from restitution.contact.checks.finding import Finding
-from restitution.contact.cohesive import COARSEST, resolves_range
+from restitution.contact.cohesive import needed_spacing
 from restitution.contact.contact import Contact
 from restitution.contact.state import State
 from restitution.numerics.box import widen
@@ -31,6 +31,9 @@ NODES_PER_PATCH = 20
 # spheres is within 2.3 % of JKR. This held for all tested positions of the apex relative to the
 # nodes (docs/adhesion.md).
 ADHESIVE_NODES = 4
+# With `cohesive`, cells up to this fraction of sqrt(r z0) at asperities of radius r change the
+# pull-off force by at most 1.5 % (docs/adhesion.md).
+_COARSEST_ON_ASPERITIES = 0.5
 # Relative error of the pull-off force of a cohesive contact if the grid resolves the range of the
 # attraction.
 _COHESIVE_PULL_OFF = 0.01
@@ -56,20 +59,38 @@ def predicted_radius(pair: Pair, indentation: float, yield_pressure: float = mat
 
 
 def adhesive_nodes(state: State) -> float:
-    """Number of nodes per pull-off radius of an asperity; inf without adhesion.
+    """Nodes per pull-off radius of an asperity with `adhesion = "jkr"`; inf otherwise."""
+    contact = state.contact
+    if not contact.adhesive or contact.cohesive:
+        return math.inf
+    return pull_off_radius(contact, radius_of_asperities(state)) / max(contact.grid.spacing)
 
-    The number is a_c/h. Here a_c is the contact radius at pull-off (`pull_off_radius`) of a sphere
-    of radius `radius_of_asperities`, and h is the larger spacing of the grid. For a cohesive
-    contact, the result is inf if the grid resolves the range of the attraction, and 0 otherwise.
+
+def adhesive_spacing(state: State) -> float:
+    """Largest cell size (m) that resolves the adhesion of the asperities in contact.
+
+    With `jkr` it is a quarter of the contact radius at pull-off (`pull_off_radius`) of a sphere of
+    radius r = `radius_of_asperities`. With `cohesive` it is `needed_spacing`, but at most
+    0.5 sqrt(r z0). It is inf without adhesion.
     """
     contact = state.contact
     if not contact.adhesive:
         return math.inf
+    radius = radius_of_asperities(state)
     if contact.cohesive:
-        h, radius = max(contact.grid.spacing), radius_of_asperities(state)
-        range_of_asperity = COARSEST * math.sqrt(radius * contact.equilibrium_separation)
-        return math.inf if resolves_range(contact) and h <= range_of_asperity else 0.0
-    return pull_off_radius(contact, radius_of_asperities(state)) / max(contact.grid.spacing)
+        reach = _COARSEST_ON_ASPERITIES * math.sqrt(radius * contact.equilibrium_separation)
+        return min(needed_spacing(contact), reach)
+    return pull_off_radius(contact, radius) / ADHESIVE_NODES
+
+
+def resolves_adhesion(state: State) -> bool:
+    """Whether the grid resolves the adhesion of the asperities in contact."""
+    return max(state.contact.grid.spacing) <= adhesive_spacing(state)
+
+
+def resolves_contact(state: State) -> bool:
+    """Whether the grid resolves the contact: the patches, and adhesion at their asperities."""
+    return resolves(median_patch(state.patch_sizes())) and resolves_adhesion(state)
 
 
 def tabor_parameter(state: State) -> float:
@@ -213,19 +234,42 @@ def unresolved_patches(depths: Sequence[float], median_patches: Sequence[float])
     ]
 
 
-def unresolved_adhesion(depths: Sequence[float], nodes: Sequence[float]) -> list[Finding]:
-    """Return the finding `adhesion-unresolved` if the pull-off radius has too few nodes.
+def unresolved_adhesion(
+    depths: Sequence[float], spacings: Sequence[float], needed: Sequence[float], unrefined: float
+) -> list[Finding]:
+    """Return the finding `adhesion-unresolved` if cells are too large for the adhesion.
 
-    `nodes` are the numbers of nodes per pull-off radius at the `depths` (m). The values of the
-    finding are `few`, the number of depths with too few nodes; `depths`, the number of all depths;
-    and `nodes`, the smallest number of nodes per pull-off radius.
+    `spacings` are the cell sizes (m) at the `depths` (m), `needed` the results of
+    `adhesive_spacing`, and `unrefined` is the cell size (m) before refinement. The values of the
+    finding are `few`, the number of depths with too large cells; `depths`, the number of all
+    depths; `from` and `to`, the range of the former (m); `spacing` and `needed`, the smallest
+    present and needed cell size there (m); and `refine`, the power of two that divides the cells
+    enough.
     """
-    few = sum(n < ADHESIVE_NODES for _, n in zip(depths, nodes, strict=True))
+    rows = list(zip(depths, spacings, needed, strict=True))
+    few = [row for row in rows if row[1] > row[2]]
     if not few:
         return []
+    finest = min(fine for _, _, fine in few)
     return [
-        Finding("adhesion-unresolved", {"few": few, "depths": len(depths), "nodes": min(nodes)})
+        Finding(
+            "adhesion-unresolved",
+            {
+                "few": len(few),
+                "depths": len(rows),
+                "from": few[0][0],
+                "to": few[-1][0],
+                "spacing": min(h for _, h, _ in few),
+                "needed": finest,
+                "refine": divisions(unrefined, finest),
+            },
+        )
     ]
+
+
+def divisions(spacing: float, needed: float) -> int:
+    """The smallest power of two that divides cells of `spacing` into cells of `needed` or less."""
+    return int(2 ** max(math.ceil(math.log2(spacing / needed) - 1e-9), 0))
 
 
 def grid_of_a_scan(contact: Contact) -> bool:
