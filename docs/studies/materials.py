@@ -13,6 +13,7 @@ QUANTITIES = {
     "density": ("Density ρ", "kg/m³", 1),
     "yield_strength": ("Yield strength Y", "MPa", 1e6),
     "hardness": ("Hardness H", "GPa", 1e9),
+    "surface_energy": ("Surface energy γ", "mJ/m²", 1e-3),
 }
 
 
@@ -32,7 +33,8 @@ def table() -> str:
                 )
                 mark = "" if found.verified else " †"
                 spread = low if low == high else f"{low} to {high}"
-                lines.append(f"| {each.key} | {value}{mark} | {spread} | {found.source} |")
+                where = f" ({found.conditions})" if key == "surface_energy" else ""
+                lines.append(f"| {each.key} | {value}{mark} | {spread} | {found.source}{where} |")
     return "\n".join(lines)
 
 

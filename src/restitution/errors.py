@@ -58,9 +58,12 @@ def one_line(text: str) -> str:
     return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
 
 
-def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """Return a question that suggests the most similar word of `known`; "" if none is similar."""
-    near = difflib.get_close_matches(word, list(known), n=1)
+def did_you_mean(word: str, known: Iterable[str], alike: float = 0.6) -> str:
+    """Return a question that suggests the most similar word of `known`; "" if none is similar.
+
+    `alike` is the least similarity, from 0 to 1.
+    """
+    near = difflib.get_close_matches(word, list(known), n=1, cutoff=alike)
     return f'did you mean "{near[0]}"?' if near else ""
 
 

@@ -39,6 +39,7 @@ FROM_LIBRARY = {
     "yield_strength": "Pa",
     "hardness": "Pa",
 }
+_REQUIRED = ("youngs_modulus", "poissons_ratio")  # keys that every body needs
 _STRENGTHS = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*(?:\*\s*)?Y\s*")
 
 
@@ -67,6 +68,13 @@ class BodyTable(Table):
         if not isinstance(table, dict) or not isinstance(table.get("material"), str):
             return table
         known = material(table["material"])
+        if lacking := [
+            key for key in _REQUIRED if getattr(known, key) is None and table.get(key) is None
+        ]:
+            raise ValueError(
+                f"{lacking[0]}: is missing, because the library found none for {known.key} in a "
+                f"source; give {' and '.join(lacking)}"
+            )
         taken = {
             key: found.value if not unit else f"{found.value!r} {unit}"
             for key, unit in FROM_LIBRARY.items()

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Annotated, cast
+from typing import Annotated, Any, cast
 
 from pydantic import BeforeValidator, model_validator
 
 from restitution.case import needs
 from restitution.case.bodies import BodyTable, InterfaceTable, Yielding
+from restitution.case.materials import Property, with_library_adhesion, work_of_adhesion
 from restitution.case.quantities import Force, Length, Pressure
 from restitution.case.roughness import GeneratedRoughness, MeasuredRoughness, Roughness
 from restitution.case.schema import GridTable, ImpactTable, Series, Table, UnloadingTable
@@ -44,6 +45,11 @@ class Case(Table):
     impact: ImpactTable | None = None
     pressure: Series[Pressure] | None = None
     unloading: UnloadingTable = UnloadingTable()
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_adhesion(cls, value: Any) -> Any:
+        return with_library_adhesion(value)
 
     @model_validator(mode="after")
     def _whole(self) -> Case:
@@ -205,8 +211,21 @@ class Case(Table):
         )
 
     def has_library_values(self) -> bool:
-        """Whether the materials library supplies any value (with its spread) of a body."""
-        return any(body.from_library() for body in self.bodies().values())
+        """Whether the materials library supplies any value, with its spread."""
+        bodies = self.bodies().values()
+        return self.library_adhesion() is not None or any(body.from_library() for body in bodies)
+
+    def library_adhesion(self) -> Property[float] | None:
+        """The work of adhesion of the materials library, if the case uses it."""
+        first, second = (body.material for body in self.bodies().values())
+        w = self.interface.work_of_adhesion
+        if not w or first is None or second is None:
+            return None
+        try:
+            known = work_of_adhesion(first, second)
+        except CaseError:
+            return None
+        return known if known.value == w else None
 
     def refined(self, factor: int | tuple[int, ...]) -> Case:
         """Return this case with cells `factor` times smaller than those of [grid].

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from restitution.case.case import Case
+from restitution.case.materials import adhesive
 from restitution.case.roughness import GeneratedRoughness
 from restitution.theory import JKR, Hertz
 
@@ -50,8 +51,15 @@ def _no_adhesion(case: Case) -> str | None:
     return (
         "interface.work_of_adhesion is left out, so there is no adhesion: at velocities below "
         f"about {below:.2g} m/s, a typical value of {TYPICAL_ADHESION} J/m2 would change COR of "
-        'smooth bodies by more than 0.01; give a value, or "0 J/m^2"'
+        f'smooth bodies by more than 0.01; give a value{_library(case)}, or "0 J/m^2"'
     )
+
+
+def _library(case: Case) -> str:
+    """Mention the value of the materials library, if it has one for the materials of the case."""
+    names = [body.material for body in case.bodies().values()]
+    known = all(name in adhesive() for name in names)
+    return ', "library" for the one of the materials library' if known else ""
 
 
 def _lowest_velocity(case: Case, mass: float) -> float:

@@ -17,6 +17,7 @@ _QUANTITIES = {
     "density": ("density", "ρ", 1.0, "kg/m^3"),
     "yield_strength": ("yield strength (tensile)", "Y", 1e-6, "MPa"),
     "hardness": ("hardness (mean pressure)", "H", 1e-9, "GPa"),
+    "surface_energy": ("surface energy", "γ", 1e3, "mJ/m^2"),
 }
 
 
@@ -37,11 +38,22 @@ def materials(
             autocompletion=_names,
         ),
     ] = None,
+    adhesion: Annotated[
+        bool,
+        typer.Option(
+            "--adhesion",
+            help="List the work of adhesion of pairs (of NAME with the others, if given), which a "
+            'case uses with work_of_adhesion = "library".',
+        ),
+    ] = False,
     json: Annotated[
         bool, typer.Option("--json", help="Print JSON, with values in SI units.")
     ] = False,
 ) -> None:
     """List the materials that a case can name, or show the material NAME with its sources."""
+    if adhesion:
+        _show_pairs(name, json)
+        return
     from restitution.case.materials import material
     from restitution.case.materials import materials as library
     from restitution.cli.console import answers, command, say, say_next
@@ -59,16 +71,46 @@ def materials(
         say(f"Note: {known.note}")
 
 
+def _show_pairs(name: str | None, json: bool) -> None:
+    """Print the work of adhesion of all pairs, or of the pairs that contain the material `name`."""
+    from itertools import combinations_with_replacement
+
+    from restitution.case.materials import adhesive, material, work_of_adhesion
+    from restitution.cli.console import answers, say, table_of_numbers
+
+    chosen = None if name is None else material(name).key
+    if chosen:
+        work_of_adhesion(chosen, chosen)  # refuse a material without a surface energy
+    pairs = {
+        pair: work_of_adhesion(*pair)
+        for pair in combinations_with_replacement(adhesive(), 2)
+        if chosen is None or chosen in pair
+    }
+    if json:
+        answers.print_json(data={" ".join(pair): w.model_dump() for pair, w in pairs.items()})
+        return
+    table = table_of_numbers(
+        Column("first", no_wrap=True), Column("second", no_wrap=True), "w (mJ/m^2)", "spread"
+    )
+    for pair, w in pairs.items():
+        spread = f"{1e3 * w.low:.3g} to {1e3 * w.high:.3g}"
+        table.add_row(*pair, f"{1e3 * w.value:.3g}", spread)
+    answers.print(table)
+    say(
+        "w = 2 sqrt(gamma_1 gamma_2) of smooth, uncharged surfaces in dry air; water, dust and "
+        "roughness change it. Surface energies and sources: restitution materials NAME"
+    )
+
+
 def _list(found: dict[str, Material]) -> Table:
     from restitution.cli.console import table_of_numbers
 
-    heads = [
-        f"{symbol} ({unit})" if unit else symbol for _, symbol, _, unit in _QUANTITIES.values()
-    ]
+    listed = {key: row for key, row in _QUANTITIES.items() if key != "surface_energy"}
+    heads = [f"{symbol} ({unit})" if unit else symbol for _, symbol, _, unit in listed.values()]
     name, material = Column("name", no_wrap=True), Column("material", overflow="fold")
     table = table_of_numbers(name, *heads, material)
     for key, each in found.items():
-        known = ((getattr(each, name), scale) for name, (_, _, scale, _) in _QUANTITIES.items())
+        known = ((getattr(each, name), scale) for name, (_, _, scale, _) in listed.items())
         cells = ("-" if of is None else f"{scale * of.value:.5g}" for of, scale in known)
         table.add_row(key, *cells, each.name)
     return table
@@ -90,5 +132,7 @@ def _values(material: Material) -> Table:
         if (known := getattr(material, key)) is not None:
             spread = f"{scale * known.low:.5g} to {scale * known.high:.5g}"
             source = known.source if known.verified else f"not verified: {known.source}"
+            if conditions := getattr(known, "conditions", ""):
+                source += f" ({conditions})"
             table.add_row(label, f"{scale * known.value:.5g}", spread, unit, escape(source))
     return table

@@ -89,7 +89,7 @@ def run_with_progress(
             f"{summary['seconds']:.1f} s; largest residual {residual:.1e}",
             markup=False,
         )
-        if advice := _advice(read, folder.rows):
+        if advice := _advice(read, folder.rows, summary["diagnostics"].get("material_advice", "")):
             say(advice)
         drawn = {path.name for path in _draw(out, figures)}
     except KeyboardInterrupt:
@@ -109,8 +109,11 @@ def run_with_progress(
     return summary
 
 
-def _advice(case: Case, rows: list[dict[str, float]]) -> str:
-    """Name the largest part of a large total error and its remedy; empty if the error is small."""
+def _advice(case: Case, rows: list[dict[str, float]], material: str) -> str:
+    """Name the largest part of a large total error and its remedy; empty if the error is small.
+
+    `material` names the library values that widen the material error most.
+    """
     if case.periodic or not any(row["total_error"] >= _LARGE for row in rows):
         return ""
     from restitution.results.total_error import largest_part
@@ -124,6 +127,8 @@ def _advice(case: Case, rows: list[dict[str, float]]) -> str:
             else "`restitution run` with realisations = 8 in [roughness] computes the mean of 8 "
             "surfaces"
         )
+    elif part == "material_error" and material:
+        remedy = material
     else:
         remedy = _REMEDIES[part]
     return f"The largest part of the total error is {part}: {remedy}."

@@ -33,6 +33,7 @@ from restitution.surfaces.refine import coarsen
 
 Array = NDArray[np.float64]
 
+ENDS = ("low", "high")  # of the spread of a library value
 SURFACES = 7  # number of additional surfaces from which the scatter is estimated
 _TOLERANCE = 0.005  # allowed error of COR due to the steps of adhesive unloading
 
@@ -171,26 +172,68 @@ class Companions:
     def materials(self, work: Array) -> list[Array]:
         """Changes of COR at `work` (J) due to the spread of values from the material library.
 
-        The list has one change for elasticity, one for the yield model and one for density. A
-        change is left out if its values have no spread, so the list may be empty. To find a change,
-        the values of both bodies are set to the low end of their spread, and then to the high end.
-        The larger of the two changes of COR is used.
+        The list has one change each for elasticity, the yield model, density and the work of
+        adhesion. A change is left out if its values have no spread, so the list may be empty. To
+        find a change, the values of both bodies are set to the low end of their spread, and then to
+        the high end. The larger of the two changes of COR is used.
         """
         coarse = self.coarse
-        ends = [_spread(self.case, end) for end in ("low", "high")]
         here, mass = self.own.at(work), coarse.pair.mass
         changes = []
-        stiff = [replace(coarse, pair=_with_modulus_of(coarse.pair, case.pair())) for case in ends]
-        strong = [replace(coarse, **_yielding(case).arguments()) for case in ends]
-        for pair in (stiff, strong):
-            if any(contact != coarse for contact in pair):
-                found = [self._curve(contact).at(work) for contact in pair]
+        for low, high in (self.stiffness_ends, self.strength_ends, self.adhesion_ends):
+            if low != coarse or high != coarse:
+                found = [self.curve(contact).at(work) for contact in (low, high)]
                 changes.append(np.maximum(*(np.abs(values - here) for values in found)))
-        masses = [case.pair().mass for case in ends]
+        masses = [case.pair().mass for case in self._ends]
         if mass is not None and any(m != mass for m in masses):
             moved = [self.own.at(work * m / mass) for m in masses if m is not None]
             changes.append(np.max([np.abs(values - here) for values in moved], axis=0))
         return changes
+
+    @cached_property
+    def stiffness_ends(self) -> tuple[Contact, Contact]:
+        """The contact with the elasticity of both bodies at the low and at the high end."""
+        low, high = (self.with_modulus_of(case) for case in self._ends)
+        return low, high
+
+    @cached_property
+    def strength_ends(self) -> tuple[Contact, Contact]:
+        """The contact with the strengths of both bodies at the low and at the high end."""
+        low, high = (self.with_yield_of(case) for case in self._ends)
+        return low, high
+
+    @cached_property
+    def adhesion_ends(self) -> tuple[Contact, Contact]:
+        """The contact with the work of adhesion at the low and at the high end of its spread."""
+        known = self.case.library_adhesion()
+        if known is None:
+            return self.coarse, self.coarse
+        low, high = (replace(self.coarse, work_of_adhesion=w) for w in (known.low, known.high))
+        return low, high
+
+    def with_modulus_of(self, case: Case) -> Contact:
+        """The contact `coarse` with the elasticity of `case`."""
+        return replace(self.coarse, pair=_with_modulus_of(self.coarse.pair, case.pair()))
+
+    def with_yield_of(self, case: Case) -> Contact:
+        """The contact `coarse` with the yield model of `case`."""
+        return replace(self.coarse, **_yielding(case).arguments())
+
+    def curve(self, contact: Contact) -> Curve:
+        """The curve of `contact`, computed once; `contact` is `coarse` with other materials."""
+        for known, curve in self._curves:
+            if known == contact:
+                return curve
+        self._curves.append((contact, self._curve(contact)))
+        return self._curves[-1][1]
+
+    @cached_property
+    def _curves(self) -> list[tuple[Contact, Curve]]:
+        return [(self.coarse, self.own)]
+
+    @cached_property
+    def _ends(self) -> list[Case]:
+        return [moved(self.case, end) for end in ENDS]
 
     def _coarse(self, case: Case) -> Contact:
         return coarser_contact(case.contact(self.folder))
@@ -229,15 +272,16 @@ def _yielding(case: Case) -> Yielding:
         return case.model_copy(update={"interface": interface}).yielding()
 
 
-def _spread(case: Case, end: str) -> Case:
-    """Return `case` with all values from the material library at one end of their spread.
+def moved(case: Case, end: str, body: str = "", key: str = "") -> Case:
+    """Return `case` with values from the material library at one end of their spread.
 
-    `end` is "low" or "high".
+    `end` is "low" or "high". `body` ("first" or "second") and `key` select one value; by default
+    all values are moved.
     """
 
-    def moved(body: BodyTable) -> BodyTable:
-        found = body.from_library()
-        return body.model_copy(update={key: getattr(its, end) for key, its in found.items()})
+    def of(name: str, table: BodyTable) -> BodyTable:
+        known = table.from_library().items() if body in ("", name) else ()
+        return table.model_copy(update={k: getattr(p, end) for k, p in known if key in ("", k)})
 
-    second = moved(case.second) if case.second else None
-    return case.model_copy(update={"first": moved(case.first), "second": second})
+    second = of("second", case.second) if case.second else None
+    return case.model_copy(update={"first": of("first", case.first), "second": second})

@@ -105,7 +105,7 @@ def run_convergence(
                 if part.rows:
                     runs[factor] = later, part.rows
         if case.total_error and runs:
-            _add_errors(case, folder, runs, progress)
+            _add_errors(case, folder, runs, log)
     return log.summary
 
 
@@ -113,7 +113,7 @@ def _add_errors(
     case: Case,
     folder: Path,
     runs: _Runs,
-    progress: Say,
+    log: RunLog,
 ) -> None:
     """Add the errors due to surface and materials to the rows of the finest grid.
 
@@ -128,10 +128,10 @@ def _add_errors(
     fine = case.refined(max(runs))
     waves = Band.of(fine.surface(folder))
     companions = Companions(fine, folder, sorted(row["max_indentation_m"] for row in reached))
-    progress("error: yielding on a finer grid")
+    log.progress("error: yielding on a finer grid")
     unseen = unseen_yield(companions, waves, reached)
     work = np.array([row["loading_work_J"] for row in reached])
-    errors = spread_errors(companions, work, progress)
+    errors = spread_errors(companions, work, log.progress, parts=log.material_parts)
     for k, row in enumerate(reached):
         found = {name: float(values[k]) for name, values in errors.items()}
         known = all(math.isfinite(error) for error in found.values())
@@ -215,7 +215,7 @@ def _write_results(
     summary["diagnostics"] = {
         **one.summary["diagnostics"],
         "largest_discretisation_error": max(known, default=None),
-        **total_error_summary(case, finest),
+        **total_error_summary(case, finest, log.material_parts),
     }
     if lacking:
         summary["warnings"].append(

@@ -155,6 +155,7 @@ class _Ensemble:
                 alone,
                 self.log.progress,
                 scattered=False,
+                parts=self.log.material_parts,
             )
         except RestitutionError as error:
             self.log.warn(f"total_error is unknown: {error}")
@@ -206,7 +207,7 @@ class _Ensemble:
                 f"largest_{name}": max(row[name] for row in whole)
                 for name in ("residual", "restitution_error")
             }
-            | total_error_summary(self.case, self.out.rows),
+            | total_error_summary(self.case, self.out.rows, self.log.material_parts),
             "convolutions": sum(int(row["convolutions"]) for row in whole),
             "seconds": self.log.seconds,
         }

@@ -51,6 +51,8 @@ from restitution.display import counted
 from restitution.results.total_error import total
 from restitution.runs.companions import SURFACES, Array, Companions
 from restitution.runs.log import Say, ignore
+from restitution.runs.material_advice import MaterialPart, advice, as_rows
+from restitution.runs.material_parts import material_parts
 from restitution.surfaces import Surface, rms_slope
 from restitution.surfaces.refine import coarsen
 
@@ -204,12 +206,18 @@ def half_interval(surfaces: int) -> float:
 
 
 def spread_errors(
-    companions: Companions, work: Array, progress: Say = ignore, *, scattered: bool = True
+    companions: Companions,
+    work: Array,
+    progress: Say = ignore,
+    *,
+    scattered: bool = True,
+    parts: list[MaterialPart] | None = None,
 ) -> dict[str, Array]:
     """Errors of COR at `work` (J) due to the surface and to the spread of library materials.
 
     The keys are `surface_scatter` and `material_error`. `surface_scatter` is absent if the case has
-    no roughness or `scattered` is false. `material_error` is absent without library values.
+    no roughness or `scattered` is false. `material_error` is absent without library values. The
+    contributions of the library values are appended to `parts`.
     """
     case = companions.case
     columns = {}
@@ -220,6 +228,8 @@ def spread_errors(
         progress("error: materials")
         changes = companions.materials(work)
         columns["material_error"] = np.sqrt(sum((c**2 for c in changes), np.zeros(work.size)))
+        if parts is not None:
+            parts += material_parts(companions, work)
     return columns
 
 
@@ -231,14 +241,16 @@ def add_errors(
     progress: Say = ignore,
     *,
     scattered: bool = True,
+    parts: list[MaterialPart] | None = None,
 ) -> list[float]:
     """Add the errors due to grid, surface and materials, and their total, to the rows of a run.
 
     `surface` is the surface on the grid of the largest depth. If `scattered` is false, the scatter
     between surfaces is left out. A row whose loading work is not positive stays unchanged, because
     the depth of this row cannot be the maximum indentation of an impact. The total error of a row
-    is set only if all of its parts are known. Returns the errors due to waves that the grid leaves
-    out, one for each row with a positive loading work.
+    is set only if all of its parts are known. The contributions of the library values are appended
+    to `parts`. Returns the errors due to waves that the grid leaves out, one for each row with a
+    positive loading work.
     """
     band: list[float] = []
     reached = [row for row in rows if row["loading_work_J"] > 0]
@@ -247,7 +259,7 @@ def add_errors(
         own = case.grid.factor == factor
         its = case if own else case.refined(factor)
         of = surface if own else its.surface(folder)
-        band += _add_errors(its, folder, of, level, progress, scattered=scattered)
+        band += _add_errors(its, folder, of, level, progress, scattered=scattered, parts=parts)
     return band
 
 
@@ -259,6 +271,7 @@ def _add_errors(
     progress: Say,
     *,
     scattered: bool,
+    parts: list[MaterialPart] | None,
 ) -> list[float]:
     """Do the work of `add_errors` for the rows of one grid.
 
@@ -273,7 +286,7 @@ def _add_errors(
     unseen = unseen_yield(companions, waves, reached)
     errors, band = grid_error(change, unseen, work, reached, waves.octaves)
     columns = {"discretisation_error": errors}
-    columns |= spread_errors(companions, work, progress, scattered=scattered)
+    columns |= spread_errors(companions, work, progress, scattered=scattered, parts=parts)
     for k, row in enumerate(reached):
         row.update({name: float(values[k]) for name, values in columns.items()})
         row["resolved"] = bool(row["resolved"]) and not band[k] > MISSING_BAND
@@ -307,14 +320,18 @@ def band_warning(surface: Surface, band_errors: Sequence[float]) -> Iterator[str
     )
 
 
-def total_error_summary(case: Case, rows: Sequence[Row]) -> dict[str, object]:
-    """The entries of `summary.json` about the total error of `rows`."""
+def total_error_summary(
+    case: Case, rows: Sequence[Row], parts: Sequence[MaterialPart] = ()
+) -> dict[str, object]:
+    """The entries of `summary.json` about the total error of `rows` and its `parts`."""
     known = [row["total_error"] for row in rows if not math.isnan(row["total_error"])]
     return {
         "largest_total_error": max(known, default=None),
         "largest_model_error": max((row["model_error"] for row in rows), default=None),
         "total_error_includes": ", ".join(included(case)) if known else "",
         "total_error_does_not_include": NOT_INCLUDED,
+        "material_errors": (values := as_rows(parts)),
+        "material_advice": advice(values),
     }
 
 

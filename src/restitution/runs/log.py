@@ -6,11 +6,14 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from restitution.errors import RestitutionError, one_line
 from restitution.results.interruption import hold_signals
 from restitution.results.writer import ResultsFolder
+
+if TYPE_CHECKING:
+    from restitution.runs.material_advice import MaterialPart
 
 Say = Callable[[str], None]
 
@@ -24,13 +27,15 @@ class RunLog:
     """The log of one run, or of several runs of one case.
 
     `progress` is called with a few words after every step, and `tell` with every warning.
-    `warnings` holds the warnings so far, which are stored with the results. `status` and `reason`
-    say how the run ended.
+    `warnings` holds the warnings so far, which are stored with the results. `material_parts` holds
+    the contributions of library values to the material error. `status` and `reason` say how the run
+    ended.
     """
 
     progress: Say = ignore
     tell: Say = ignore
     warnings: list[str] = field(default_factory=list)
+    material_parts: list[MaterialPart] = field(default_factory=list)
     status: str = "failed"
     reason: str = "stopped by an unexpected error"
     began: float = field(default_factory=time.perf_counter)

@@ -129,7 +129,14 @@ def run_case(
             )
         if errors and case.total_error and out.rows:
             try:
-                run.band_errors = add_errors(case, folder, contact.surface, out.rows, run.progress)
+                run.band_errors = add_errors(
+                    case,
+                    folder,
+                    contact.surface,
+                    out.rows,
+                    run.progress,
+                    parts=run.material_parts,
+                )
             except RestitutionError as error:
                 run.warn(f"total_error is unknown: {error}")
             out.put_curve(out.rows)
@@ -259,7 +266,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> d
             "largest_residual": max(row["residual"] for row in out.rows),
             "largest_loading_work_error": max(run.loading_work_errors),
             "largest_restitution_error": max(row["restitution_error"] for row in out.rows),
-            **total_error_summary(case, out.rows),
+            **total_error_summary(case, out.rows, run.material_parts),
             "unloading_checks": run.unloading_checks,
         },
         "device": current().name,
@@ -272,6 +279,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> d
 
 def _materials(case: Case) -> dict[str, Any]:
     """Material values that come from the library, with their spread and source."""
+    adhesion = case.library_adhesion()
     return {
         name: {
             "material": body.material,
@@ -279,7 +287,7 @@ def _materials(case: Case) -> dict[str, Any]:
         }
         for name, body in case.bodies().items()
         if body.material is not None
-    }
+    } | ({"interface": {"work_of_adhesion": adhesion.model_dump()}} if adhesion else {})
 
 
 def _result_warnings(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> Iterator[str]:
