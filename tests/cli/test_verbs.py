@@ -84,6 +84,21 @@ def test_run_names_the_largest_part_of_a_large_error(cli, case_text, tmp_path, m
     assert f"The largest part of the total error is {words}" in " ".join(said.split())
 
 
+def test_run_names_the_library_value_that_matters_most(cli, tmp_path):
+    """The spread of lactose makes COR useless: which of its values to measure?"""
+    (tmp_path / "case.toml").write_text(
+        'first = { material = "lactose", radius = "50 um" }\nsecond = "steel"\n'
+        '[grid]\nnodes = 48\nspacing = "0.5 um"\n[impact]\nvelocity = ["3 m/s"]\n'
+    )
+    status, said, _ = cli("run", tmp_path / "case.toml", "-o", tmp_path / "out")
+    assert status == 0
+    flowing = " ".join(said.split())
+    assert "The largest part of the total error is material_error: most of it comes from" in flowing
+    assert "Young's modulus of lactose (3.45 GPa to 24.1 GPa): ±0." in flowing
+    assert "hardness of lactose (500 MPa to 1.5 GPa): ±0." in flowing
+    assert "in [first]." in flowing
+
+
 def test_run_gives_no_advice_if_the_error_is_small(cli, case_text, tmp_path):
     smooth = case_text[: case_text.index("[roughness]")] + case_text[case_text.index("[grid]") :]
     (tmp_path / "case.toml").write_text(smooth)
