@@ -5,7 +5,9 @@
 
 from __future__ import annotations
 
-from restitution.case.materials import materials
+from itertools import combinations_with_replacement
+
+from restitution.case.materials import adhesive, materials, work_of_adhesion
 
 QUANTITIES = {
     "youngs_modulus": ("Young's modulus E", "GPa", 1e9),
@@ -38,5 +40,14 @@ def table() -> str:
     return "\n".join(lines)
 
 
+def pairs() -> str:
+    """The rows of the table of works of adhesion."""
+    return "\n".join(
+        f"| {first}, {second} | {1e3 * w.value:.3g} | {1e3 * w.low:.3g} to {1e3 * w.high:.3g} |"
+        for first, second in combinations_with_replacement(adhesive(), 2)
+        if (w := work_of_adhesion(first, second))
+    )
+
+
 if __name__ == "__main__":
-    print(table())
+    print(pairs(), table(), sep="\n\n")
