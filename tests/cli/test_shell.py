@@ -25,7 +25,11 @@ def test_a_shell_completes_verbs_options_and_values(cli, monkeypatch):
     ]
     assert "--velocity" in complete(cli, monkeypatch, "restitution export --", 2)
     assert complete(cli, monkeypatch, "restitution export --to l", 3) == ["lammps", "liggghts"]
-    assert complete(cli, monkeypatch, "restitution materials st", 2) == ["steel", "stainless-steel"]
+    assert complete(cli, monkeypatch, "restitution materials st", 2) == [
+        "steel",
+        "stainless-steel",
+        "starch",
+    ]
 
 
 def test_completion_can_be_installed(cli):

@@ -183,8 +183,8 @@ def test_converge_adds_the_yielding_that_no_grid_shows(case_text, tmp_path, monk
 def test_a_row_with_an_unknown_scatter_has_no_total(case_text, tmp_path, monkeypatch):
     real = convergence.spread_errors
 
-    def unknown(companions, work, *more):
-        found = real(companions, work, *more)
+    def unknown(companions, work, *more, **options):
+        found = real(companions, work, *more, **options)
         found["surface_scatter"][0] = math.nan
         return found
 

@@ -325,13 +325,13 @@ def total_error_summary(
 ) -> dict[str, object]:
     """The entries of `summary.json` about the total error of `rows` and its `parts`."""
     known = [row["total_error"] for row in rows if not math.isnan(row["total_error"])]
+    values = as_rows(parts)
     return {
         "largest_total_error": max(known, default=None),
         "largest_model_error": max((row["model_error"] for row in rows), default=None),
         "total_error_includes": ", ".join(included(case)) if known else "",
         "total_error_does_not_include": NOT_INCLUDED,
-        "material_errors": (values := as_rows(parts)),
-        "material_advice": advice(values),
+        **({"material_errors": values, "material_advice": advice(values)} if values else {}),
     }
 
 
