@@ -3,6 +3,7 @@
 import pytest
 
 from restitution.case.case_file import parse_case
+from restitution.case.materials import work_of_adhesion
 from restitution.errors import CaseError
 from restitution.mixtures.family import families
 from restitution.mixtures.mixture_file import parse_mixture
@@ -151,6 +152,26 @@ def test_no_two_surfaces_of_a_pair_have_the_same_seed(mixture_text):
         assert len({part.seed for part in parts}) == len(parts)
     cases = {family.name: family.case(family.radii[0]) for family in families(mixture)}
     assert len(parse_case(cases["alu+pmma"]).roughness) == 2
+
+
+def test_each_pair_may_take_its_work_of_adhesion_from_the_library(mixture_text):
+    text = mixture_text(
+        ('material = "aluminium"', 'material = "glass"'),
+        ('material = "pmma"', 'material = "polystyrene"'),
+        ('material = "steel"', 'material = "stainless-steel"'),
+        ('"0 J/m^2"', '"library"'),
+    )
+    w = {
+        frozenset((case.first.material, case.second.material)): case.interface.work_of_adhesion
+        for family in families(parse_mixture(text))
+        for case in [parse_case(family.case(100e-6))]
+    }
+    assert len(w) == 5
+    for pair, energy in w.items():
+        assert energy == work_of_adhesion(min(pair), max(pair)).value
+    unknown = text.replace('"polystyrene"', '"pmma"')
+    with pytest.raises(CaseError, match="no surface energy of pmma"):
+        [parse_case(family.case(100e-6)) for family in families(parse_mixture(unknown))]
 
 
 def test_friction_belongs_to_pairs_and_angles_are_refused(mixture_text):

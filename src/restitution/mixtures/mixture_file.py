@@ -9,10 +9,11 @@ from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
 import numpy as np
-from pydantic import Field, ValidationError, model_validator
+from pydantic import BeforeValidator, Field, ValidationError, model_validator
 
 from restitution.case.bodies import BodyTable, InterfaceTable
 from restitution.case.case_file import in_words, naming, parse_toml, read_text
+from restitution.case.materials import LIBRARY
 from restitution.case.quantities import Length
 from restitution.case.roughness import Roughness
 from restitution.case.schema import GridTable, ImpactTable, PairOf, Table
@@ -94,13 +95,23 @@ class Component:
         return not self.radii
 
 
+def _with_some_adhesion(value: Any) -> Any:
+    """Replace "library", which only the case of a pair can resolve, so that the rest is checked."""
+    if isinstance(value, dict) and value.get("work_of_adhesion") == LIBRARY:
+        return {**value, "work_of_adhesion": "0.05 J/m^2"}
+    return value
+
+
+_Interface = Annotated[InterfaceTable, BeforeValidator(_with_some_adhesion)]
+
+
 class _File(Table):
     """The keys of a mixture file, except the tables of materials and walls."""
 
     title: str = ""
     interpolation_error: Annotated[float, Field(gt=0, lt=1)] = 0.01
-    interface: InterfaceTable = InterfaceTable()
-    pairs: dict[str, InterfaceTable] = Field(default_factory=dict)
+    interface: _Interface = InterfaceTable()
+    pairs: dict[str, _Interface] = Field(default_factory=dict)
     grid: GridTable | None = None
     impact: ImpactTable
 
