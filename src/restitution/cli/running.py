@@ -60,6 +60,7 @@ def run_with_progress(
     from restitution.results.locking import locked
     from restitution.results.schema import LOCK
     from restitution.results.writer import ResultsFolder
+    from restitution.runs.attraction import in_words
     from restitution.runs.error_budget import steps
 
     read, text = read_case(case)
@@ -89,6 +90,8 @@ def run_with_progress(
             f"{summary['seconds']:.1f} s; largest residual {residual:.1e}",
             markup=False,
         )
+        if attraction := in_words(summary.get("sticking", {}), folder.rows):
+            say(attraction)
         if advice := _advice(read, folder.rows, summary["diagnostics"].get("material_advice", "")):
             say(advice)
         drawn = {path.name for path in _draw(out, figures)}
@@ -170,8 +173,10 @@ def _curve(rows: list[dict[str, float]]) -> Table:
 
     if "nominal_pressure_Pa" in rows[0]:
         return _periodic_curve(rows)
+    adhesive = any(row["pull_off_force_N"] > 0 for row in rows)
+    pull_off = ["pull-off"] if adhesive else []
     table = table_of_numbers(
-        "depth (nm)", "force (N)", "V (m/s)", "COR", "± model", "nodes", "resolved"
+        "depth (nm)", "force (N)", "V (m/s)", "COR", "± model", *pull_off, "nodes", "resolved"
     )
     for row in rows:
         velocity, error = row["impact_velocity_m_per_s"], row["total_error"]
@@ -181,10 +186,18 @@ def _curve(rows: list[dict[str, float]]) -> Table:
             "-" if math.isnan(velocity) else f"{velocity:.4g}",
             f"{row['restitution']:.4f}" + ("" if math.isnan(error) else f" ± {error:.4f}"),
             f"{row['model_error']:.3f}",
+            *([_force(row)] if adhesive else []),
             f"{row['contact_nodes']:.0f}",
             "yes" if row["resolved"] else "no",
         )
     return table
+
+
+def _force(row: dict[str, float]) -> str:
+    from restitution.display import quantity
+
+    force, error = row["pull_off_force_N"], row["pull_off_error_N"]
+    return f"{quantity(force, 'N')} ± {error / force:.0%}" if force > 0 else "unknown"
 
 
 def _periodic_curve(rows: list[dict[str, float]]) -> Table:

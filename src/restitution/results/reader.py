@@ -25,6 +25,7 @@ from restitution.results.interruption import hold_signals
 from restitution.results.schema import (
     ALL_COLUMNS,
     COLUMNS,
+    LATER,
     OBLIQUE_COLUMNS,
     OBLIQUE_FILE,
     OBLIQUE_SPREAD_COLUMNS,
@@ -120,7 +121,7 @@ class RunResults:
     @cached_property
     def curve(self) -> Curve:
         """The rows of `curve.csv`."""
-        return _read_table(self.folder / "curve.csv", COLUMNS, ALL_COLUMNS)
+        return _read_table(self.folder / "curve.csv", COLUMNS.keys() - LATER, ALL_COLUMNS)
 
     @cached_property
     def summary(self) -> dict[str, Any]:
@@ -137,6 +138,9 @@ class RunResults:
     def dataset(self) -> xr.Dataset:
         """The whole content of `results.nc`, loaded into memory."""
         results = read_netcdf(self._netcdf)
+        for key in LATER & {key for key in COLUMNS if COLUMNS[key].variable not in results}:
+            empty = np.full(results.sizes.get("indentation_max", 0), np.nan)
+            results[COLUMNS[key].variable] = COLUMNS[key].labelled("indentation_max", empty)
         for name, column in ((column.variable, column) for column in COLUMNS.values()):
             if name not in results or results[name].dims != ("indentation_max",):
                 raise damaged(self._netcdf, f"{name} is missing")
@@ -274,7 +278,9 @@ class StudyResults:
         """The cases in `table.csv`."""
         path = self.folder / "table.csv"
         found: dict[str, StoredCase] = {}
-        for line, cells in enumerate(read_cells(path, (*COLUMNS, "case", "status", "reason")), 2):
+        for line, cells in enumerate(
+            read_cells(path, (*(COLUMNS.keys() - LATER), "case", "status", "reason")), 2
+        ):
             swept = dict(list(cells.items())[: list(cells).index("max_indentation_m")])
             status = cells["status"]
             if status not in STATUS:

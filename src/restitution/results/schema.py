@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from restitution.contact.checks.resolution import ADHESIVE_NODES, NODES_PER_PATCH
+from restitution.contact.checks.resolution import NODES_PER_PATCH
 
 
 @dataclass(frozen=True)
@@ -58,6 +58,13 @@ COLUMNS = {
     "pull_off_force_N": Column(
         "pull_off_force", "N", "largest tension during unloading", optional=True
     ),
+    "pull_off_error_N": _magnitude(
+        "pull_off_error",
+        "error of the pull-off force: range of the attraction, solver, and with the total error "
+        "grid, surface and materials",
+        unit="N",
+        optional=True,
+    ),
     "separation_indentation_m": Column(
         "separation_indentation", "m", "indentation at separation", optional=True
     ),
@@ -66,8 +73,7 @@ COLUMNS = {
     "adhesion_resolved": Column(
         "adhesion_resolved",
         "1",
-        f"the pull-off radius has at least {ADHESIVE_NODES} nodes, or the grid resolves the range "
-        "of the attraction",
+        "the grid resolves the adhesion of the asperities in contact",
         flag=True,
     ),
     "median_patch_nodes": _magnitude(
@@ -77,7 +83,8 @@ COLUMNS = {
     "resolved": Column(
         "resolved",
         "1",
-        f"the median patch has at least {NODES_PER_PATCH} nodes",
+        f"the median patch has at least {NODES_PER_PATCH} nodes, the grid resolves adhesion, and "
+        f"the waves that it omits change restitution little",
         flag=True,
     ),
     "discretisation_error": _magnitude(
@@ -129,6 +136,8 @@ SPREAD_COLUMNS = {
     ),
 }
 ALL_COLUMNS = COLUMNS | SPREAD_COLUMNS
+# Columns that results of older versions lack; they are read as empty.
+LATER = {"pull_off_error_N"}
 PERIODIC_FILE = "periodic.csv"  # the curve of a periodic contact, instead of curve.csv
 OBLIQUE_FILE = "oblique.csv"
 # Columns of the table of oblique impacts. The tangential restitution and the angle of rebound refer

@@ -25,6 +25,7 @@ import numpy as np
 import xarray as xr
 
 from restitution.collision import Collision
+from restitution.contact.checks.pull_off import pull_off_error
 from restitution.contact.checks.resolution import (
     median_patch,
     resolves_adhesion,
@@ -76,6 +77,7 @@ def curve_row(
         state.residual,
         state.convolutions + collision.convolutions,
         collision.pull_off_force,
+        pull_off_error(state, collision.pull_off_force),
         collision.separation_indentation + touch,
         collision.restitution_error,
         collision.sticks,

@@ -10,7 +10,7 @@ velocity. If the masses are equal, the loading work is then equal, too.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -34,6 +34,7 @@ from restitution.surfaces.refine import coarsen
 Array = NDArray[np.float64]
 
 ENDS = ("low", "high")  # of the spread of a library value
+CONFIDENCE = 0.95  # level of the confidence interval of a mean over surfaces
 SURFACES = 7  # number of additional surfaces from which the scatter is estimated
 _TOLERANCE = 0.005  # allowed error of COR due to the steps of adhesive unloading
 
@@ -48,15 +49,35 @@ _SHALLOWER, _DEEPER = 0.5, 1.3
 
 @dataclass(frozen=True)
 class Curve:
-    """Loading and unloading work (J) of impacts, at increasing values of the loading work."""
+    """Loading and unloading work (J) of impacts, at increasing values of the loading work.
+
+    `pull_off` is the pull-off force (N) after each impact; NaN if it is not known.
+    """
 
     work: Array
     unloading_work: Array
+    pull_off: Array
 
     @property
     def restitution(self) -> Array:
         """COR of the impacts: sqrt(unloading work/loading work), 0 if the bodies stick."""
         return np.sqrt(np.clip(self.unloading_work / self.work, 0.0, 1.0))
+
+    def ratio(self, work: Array) -> Array:
+        """Ratio of unloading to loading work at `work` (J), negative where the bodies stick.
+
+        The energy loss is interpolated linearly in ln(work), and constant beyond the ends.
+        """
+        if not self.work.size:
+            return np.full(np.shape(work), math.nan)
+        lost = self.work - self.unloading_work
+        return np.asarray(1 - np.interp(np.log(work), np.log(self.work), lost) / work)
+
+    def pull_off_at(self, work: Array) -> Array:
+        """Pull-off force (N) at `work` (J): linear in ln(work), constant beyond the ends."""
+        if not self.work.size:
+            return np.full(np.shape(work), math.nan)
+        return np.asarray(np.interp(np.log(work), np.log(self.work), self.pull_off))
 
     def at(self, work: Array) -> Array:
         """Interpolate COR at `work` (J): monotone cubic in ln(work), constant beyond the ends.
@@ -100,6 +121,7 @@ def _curve_of(
     """Compute a curve as `curve_of` does, with one of `contacts` for each depth."""
     works: list[float] = []
     returned: list[float] = []
+    tensions: list[float] = []
     back: list[State] = []
     state: State | None = None
     before = contacts[0]
@@ -123,7 +145,20 @@ def _curve_of(
         if collision.loading_work > (works[-1] if works else 0.0):
             works.append(collision.loading_work)
             returned.append(collision.unloading_work)
-    return Curve(np.array(works), np.array(returned))
+            tensions.append(collision.pull_off_force)
+    return Curve(np.array(works), np.array(returned), np.array(tensions))
+
+
+def half_interval(surfaces: int) -> float:
+    """Ratio of the half width of a confidence interval to the sample standard deviation.
+
+    The interval is the 95 % confidence interval of the mean over `surfaces` surfaces. The ratio is
+    t/√n, with Student's t and the number n of surfaces. It is NaN for one surface.
+    """
+    # stdtrit is the quantile of Student's t. Importing scipy.stats would take 30 MB more memory.
+    from scipy.special import stdtrit
+
+    return float(stdtrit(surfaces - 1, 0.5 * (1 + CONFIDENCE))) / math.sqrt(surfaces)
 
 
 @dataclass(frozen=True)
@@ -163,11 +198,12 @@ class Companions:
             return self.own
         return _curve_of(lowered, self.depths, self.case.unloading.method)
 
-    def others(self, progress: Say = ignore) -> Iterator[Curve]:
-        """Compute curves of other surfaces of the same kind (other seeds or places of the scan)."""
-        for number in range(1, SURFACES + 1):
+    def others(self, progress: Say = ignore) -> list[Curve]:
+        """Curves of other surfaces of the same kind (other seeds or places of the scan)."""
+        for number in range(1 + len(self._others), SURFACES + 1):
             progress(f"error: surface {number} of {SURFACES}")
-            yield self._curve(self._coarse(self.case.variant(number)))
+            self._others.append(self._curve(self._coarse(self.case.variant(number))))
+        return self._others
 
     def materials(self, work: Array) -> list[Array]:
         """Changes of COR at `work` (J) due to the spread of values from the material library.
@@ -180,15 +216,19 @@ class Companions:
         coarse = self.coarse
         here, mass = self.own.at(work), coarse.pair.mass
         changes = []
-        for low, high in (self.stiffness_ends, self.strength_ends, self.adhesion_ends):
-            if low != coarse or high != coarse:
-                found = [self.curve(contact).at(work) for contact in (low, high)]
-                changes.append(np.maximum(*(np.abs(values - here) for values in found)))
+        for ends in self.material_ends():
+            found = [self.curve(contact).at(work) for contact in ends]
+            changes.append(np.maximum(*(np.abs(values - here) for values in found)))
         masses = [case.pair().mass for case in self._ends]
         if mass is not None and any(m != mass for m in masses):
             moved = [self.own.at(work * m / mass) for m in masses if m is not None]
             changes.append(np.max([np.abs(values - here) for values in moved], axis=0))
         return changes
+
+    def material_ends(self) -> list[tuple[Contact, Contact]]:
+        """Pairs of contacts with one kind of library value at either end of its spread."""
+        ends = (self.stiffness_ends, self.strength_ends, self.adhesion_ends)
+        return [pair for pair in ends if any(contact != self.coarse for contact in pair)]
 
     @cached_property
     def stiffness_ends(self) -> tuple[Contact, Contact]:
@@ -230,6 +270,10 @@ class Companions:
     @cached_property
     def _curves(self) -> list[tuple[Contact, Curve]]:
         return [(self.coarse, self.own)]
+
+    @cached_property
+    def _others(self) -> list[Curve]:
+        return []
 
     @cached_property
     def _ends(self) -> list[Case]:

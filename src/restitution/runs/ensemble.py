@@ -22,12 +22,12 @@ from restitution.results.writer import (
     status_attributes,
     write_table,
 )
+from restitution.runs.attraction import Sticking, mean_of, stored, summary_of, with_errors
+from restitution.runs.companions import CONFIDENCE, Companions, half_interval
 from restitution.runs.error_budget import (
-    CONFIDENCE,
     MISSING_BAND,
     Row,
     add_errors,
-    half_interval,
     interrupted_errors,
     total_error_summary,
 )
@@ -94,6 +94,8 @@ class _Ensemble:
         self.ended: list[dict[str, Any]] = []
         self.errors: list[Row] = []
         self.band_errors: list[float] = []
+        self.sticking: dict[int, Sticking] = {}
+        self.one_sticking: Sticking | None = None  # with the errors of grid and materials
 
     def compute(self) -> None:
         """Run the case on every surface, and estimate the errors due to grid and materials."""
@@ -112,7 +114,7 @@ class _Ensemble:
         try:
             # Most input warnings are the same for all surfaces, so only those of the first
             # surface are passed on.
-            run_case(
+            summary = run_case(
                 case.model_copy(update={"title": title}),
                 self.text,
                 self.folder,
@@ -121,6 +123,8 @@ class _Ensemble:
                 warn=ignore if number else self.log.warnings_of(part),
                 errors=False,
             )
+            if (pair := stored(summary["sticking"])) is not None:
+                self.sticking[number] = pair
         except RestitutionError as error:
             self.failures.append(error)
             reason = str(error)
@@ -147,6 +151,7 @@ class _Ensemble:
         number = max(self.curves, key=lambda k: len(self.curves[k]))
         case, rows = self.case.realisation(number), self.curves[number]
         alone = [dict(row) for row in rows]
+        made: dict[int, Companions] = {}
         try:
             self.band_errors = add_errors(
                 case,
@@ -156,7 +161,11 @@ class _Ensemble:
                 self.log.progress,
                 scattered=False,
                 parts=self.log.material_parts,
+                made=made,
             )
+            if number in self.sticking:
+                pair = self.sticking[number]
+                self.one_sticking = with_errors(pair, made[max(made)], scattered=False)
         except RestitutionError as error:
             self.log.warn(f"total_error is unknown: {error}")
         self.errors = alone
@@ -191,6 +200,7 @@ class _Ensemble:
             "depths_asked": len(self.case.depths()),
             "depths_computed": len(self.out.rows),
             "warnings": [*self.log.warnings, *self._result_warnings(whole)],
+            "sticking": summary_of(mean_of(list(self.sticking.values()), self.one_sticking)),
             **{
                 key: one[key]
                 for key in (
@@ -255,8 +265,9 @@ def mean_rows(curves: Sequence[Sequence[Row]], errors: Sequence[Row] = ()) -> li
             row[name] = all(values) if column.flag else float(_WORST.get(name, np.mean)(values))
         restitution = [surface["restitution"] for surface in of]
         n = len(of)
-        std = float(np.std(restitution, ddof=1)) if n > 1 else math.nan
+        std = _deviation(restitution)
         half = half_interval(n) * std
+        half_pull_off = half_interval(n) * _deviation([each["pull_off_force_N"] for each in of])
         row["realisations"] = n
         row["restitution_std"] = std
         row["restitution_low"] = max(row["restitution"] - half, 0.0)
@@ -266,7 +277,13 @@ def mean_rows(curves: Sequence[Sequence[Row]], errors: Sequence[Row] = ()) -> li
                 row[name] = errors[depth][name]
             row["resolved"] = bool(row["resolved"]) and bool(errors[depth]["resolved"])
             row["surface_scatter"] = half
+            row["pull_off_error_N"] = math.hypot(errors[depth]["pull_off_error_N"], half_pull_off)
             if n > 1:
                 row["total_error"] = total(row)
         rows.append(row)
     return rows
+
+
+def _deviation(values: Sequence[float]) -> float:
+    """Sample standard deviation; NaN for one value."""
+    return float(np.std(values, ddof=1)) if len(values) > 1 else math.nan

@@ -49,7 +49,8 @@ import numpy as np
 from restitution.case.case import Case
 from restitution.display import counted
 from restitution.results.total_error import total
-from restitution.runs.companions import SURFACES, Array, Companions
+from restitution.runs.attraction import add_pull_off_errors
+from restitution.runs.companions import SURFACES, Array, Companions, half_interval
 from restitution.runs.log import Say, ignore
 from restitution.runs.material_advice import MaterialPart, advice, as_rows
 from restitution.runs.material_parts import material_parts
@@ -69,7 +70,6 @@ _FEW_NODES, _SHARE = (3, 7), (0.6, 0.1)
 # late and all at once, so contacts with such patches may have almost any error of COR.
 _PATCH_NODES = (1, 3, 7, 14, 30, 100, 400)
 _PATCH_ERROR = (0.9, 0.4, 0.15, 0.08, 0.05, 0.024, 0.008)
-CONFIDENCE = 0.95  # level of the confidence interval of a mean COR over surfaces
 # Differences of COR between grids and between surfaces are smoothed over the loading work, because
 # single differences may vanish by chance. These are the widths of the smoothing in ln(work).
 _NEAR_GRID, _NEAR_SURFACE = 2.0, 1.0
@@ -193,18 +193,6 @@ def scatter(restitution: Array, work: Array) -> Array:
     return np.asarray(np.abs(restitution[0] - known.mean(axis=0)) + half)
 
 
-def half_interval(surfaces: int) -> float:
-    """Ratio of the half width of a confidence interval to the sample standard deviation of COR.
-
-    The interval is the 95 % confidence interval of the mean COR of `surfaces` surfaces. The ratio
-    is t/√n, with Student's t and the number n of surfaces. It is NaN for one surface.
-    """
-    # stdtrit is the quantile of Student's t. Importing scipy.stats would take 30 MB more memory.
-    from scipy.special import stdtrit
-
-    return float(stdtrit(surfaces - 1, 0.5 * (1 + CONFIDENCE))) / math.sqrt(surfaces)
-
-
 def spread_errors(
     companions: Companions,
     work: Array,
@@ -242,6 +230,7 @@ def add_errors(
     *,
     scattered: bool = True,
     parts: list[MaterialPart] | None = None,
+    made: dict[int, Companions] | None = None,
 ) -> list[float]:
     """Add the errors due to grid, surface and materials, and their total, to the rows of a run.
 
@@ -249,7 +238,8 @@ def add_errors(
     between surfaces is left out. A row whose loading work is not positive stays unchanged, because
     the depth of this row cannot be the maximum indentation of an impact. The total error of a row
     is set only if all of its parts are known. The contributions of the library values are appended
-    to `parts`. Returns the errors due to waves that the grid leaves out, one for each row with a
+    to `parts`, and the companion curves of each refinement factor are put into `made`. Returns the
+    errors due to waves that the grid leaves out, one for each row with a
     positive loading work.
     """
     band: list[float] = []
@@ -259,13 +249,16 @@ def add_errors(
         own = case.grid.factor == factor
         its = case if own else case.refined(factor)
         of = surface if own else its.surface(folder)
-        band += _add_errors(its, folder, of, level, progress, scattered=scattered, parts=parts)
+        depths = sorted(row["max_indentation_m"] for row in level)
+        companions = Companions(its, folder, depths)
+        band += _add_errors(companions, of, level, progress, scattered=scattered, parts=parts)
+        if made is not None:
+            made[factor] = companions
     return band
 
 
 def _add_errors(
-    case: Case,
-    folder: Path,
+    companions: Companions,
     surface: Surface,
     reached: Sequence[Row],
     progress: Say,
@@ -279,7 +272,6 @@ def _add_errors(
     """
     work = np.array([row["loading_work_J"] for row in reached])
     restitution = np.array([row["restitution"] for row in reached])
-    companions = Companions(case, folder, sorted(row["max_indentation_m"] for row in reached))
     waves = Band.of(surface)
     progress("error: cells twice as large")
     change = restitution - companions.own.at(work)
@@ -292,6 +284,7 @@ def _add_errors(
         row["resolved"] = bool(row["resolved"]) and not band[k] > MISSING_BAND
         if all(math.isfinite(values[k]) for values in columns.values()):
             row["total_error"] = total(row)
+    add_pull_off_errors(companions, reached, scattered=scattered)
     return [float(error) for error in band]
 
 

@@ -35,6 +35,8 @@ from restitution.results.writer import (
     status_attributes,
     versions,
 )
+from restitution.runs.attraction import Sticking, sticking, summary_of, with_errors
+from restitution.runs.companions import Companions
 from restitution.runs.depths import Depth, collision_at, loaded_depths
 from restitution.runs.error_budget import (
     add_errors,
@@ -82,6 +84,7 @@ class _Run(RunLog):
     depth_seconds: list[float] = field(default_factory=list)
     unloading_checks: list[dict[str, float]] = field(default_factory=list)
     last_unloading: Sequence[State] = ()
+    sticking: Sticking | None = None
 
 
 def run_case(
@@ -127,7 +130,9 @@ def run_case(
             failure = _load_and_unload(
                 loaded_depths(case, folder, contact), case, out, run, go_on=errors
             )
+        run.sticking = sticking(case, folder, out.rows)
         if errors and case.total_error and out.rows:
+            made: dict[int, Companions] = {}
             try:
                 run.band_errors = add_errors(
                     case,
@@ -136,7 +141,11 @@ def run_case(
                     out.rows,
                     run.progress,
                     parts=run.material_parts,
+                    made=made,
                 )
+                if run.sticking is not None:
+                    finest = made[max(made)]
+                    run.sticking = with_errors(run.sticking, finest, scattered=True)
             except RestitutionError as error:
                 run.warn(f"total_error is unknown: {error}")
             out.put_curve(out.rows)
@@ -260,6 +269,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> d
             "yield_pressure": FULL_PRESSURE if contact.grows else YIELD_PRESSURE,
         },
         "derived": derived_quantities(case, contact),
+        "sticking": summary_of(run.sticking),
         "surface": dict(contact.surface.provenance),
         "surface_statistics": describe(contact.surface),
         "diagnostics": {

@@ -1,0 +1,247 @@
+"""Pull-off force and sticking velocity of an adhesive pair, with their errors.
+
+The errors combine, in quadrature: the solver, the grid (difference from cells twice as large), the
+scatter between surfaces of the same kind, and the spread of library materials, all from the
+companion curves of the total error (`companions`). The pull-off force has in addition the error of
+`contact.checks.pull_off`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from restitution.case.case import Case
+from restitution.collision import Collision, collide
+from restitution.contact.prescribed_velocity import solve_at_velocity
+from restitution.display import quantity
+from restitution.errors import RestitutionError
+from restitution.runs.companions import Array, Companions, Curve, half_interval
+
+Row = dict[str, float]
+
+_NEAR = 0.02  # relative change of the sticking velocity at which its search ends
+_MOST_SOLVES = 6
+
+
+@dataclass(frozen=True)
+class Sticking:
+    """The velocity (m/s) up to which a pair sticks, and its error (m/s).
+
+    `velocity` is 0 if no velocity loses enough energy. `solver_error` is the error of the solver,
+    and `error` that of all parts (None if unknown). `lowest` is the velocity at which the energy
+    loss was last computed.
+    """
+
+    velocity: float
+    solver_error: float
+    lowest: float
+    error: float | None = None
+
+
+def sticking(case: Case, folder: Path, rows: Sequence[Row]) -> Sticking | None:
+    """Find the velocity up to which the pair sticks, from the loss of energy L: ½ m* V² = L(V).
+
+    The search begins at the lowest velocity at which the pair rebounds in `rows`. Returns None
+    without adhesion or impact velocities, or if the pair sticks at the highest velocity.
+    """
+    mass = case.pair().mass
+    if mass is None or not case.interface.adhesive_energy or case.unloading.method != "path":
+        return None
+    impacts = [row for row in rows if row["loading_work_J"] > 0]
+    if not impacts or impacts[-1]["sticks"]:
+        return None
+    first = len(impacts)
+    while first and not impacts[first - 1]["sticks"]:
+        first -= 1
+    row = impacts[first]
+    contact = case.refined(int(row["refine"])).realisation(0).contact(folder)
+    begin = _Impact(
+        row["impact_velocity_m_per_s"],
+        row["loading_work_J"] - row["unloading_work_J"],
+        # The error of e is that of W_u/W_l divided by 2 e.
+        2 * row["restitution"] * row["restitution_error"] * row["loading_work_J"],
+    )
+
+    def impact(velocity: float) -> _Impact:
+        return _Impact.of(collide(solve_at_velocity(contact, velocity)), velocity)
+
+    return _search(begin, impact, mass)
+
+
+def with_errors(pair: Sticking, companions: Companions, *, scattered: bool) -> Sticking:
+    """Add the errors due to grid, surfaces (if `scattered`) and materials to `pair`."""
+    mass = companions.coarse.pair.mass
+    assert mass is not None
+    work = np.array([0.5 * mass * max(pair.velocity, pair.lowest) ** 2])
+
+    def velocity(curve: Curve) -> Array:
+        lost = np.maximum(work * (1 - curve.ratio(work)), 0.0)
+        return np.sqrt(np.where(lost > _NEGLIGIBLE * work, 2 * lost / mass, 0.0))
+
+    parts = curve_errors(companions, velocity, np.array([pair.velocity]), scattered=scattered)
+    error = math.hypot(pair.solver_error, *(float(part[0]) for part in parts))
+    return Sticking(pair.velocity, pair.solver_error, pair.lowest, error)
+
+
+def add_pull_off_errors(
+    companions: Companions, rows: Sequence[Row], *, scattered: bool = True
+) -> None:
+    """Add the errors due to grid, surfaces and materials to `pull_off_error_N` of `rows`."""
+    if not companions.coarse.adhesive:
+        return
+    work = np.array([row["loading_work_J"] for row in rows])
+    force = np.array([row["pull_off_force_N"] for row in rows])
+    parts = curve_errors(companions, lambda c: c.pull_off_at(work), force, scattered=scattered)
+    for k, row in enumerate(rows):
+        known = (float(part[k]) for part in parts)
+        row["pull_off_error_N"] = math.hypot(row["pull_off_error_N"], *known)
+
+
+def curve_errors(
+    companions: Companions,
+    quantity_of: Callable[[Curve], Array],
+    here: Array,
+    *,
+    scattered: bool,
+) -> list[Array]:
+    """Errors of a quantity whose values are `here` on the grid of the run.
+
+    The list has one error due to the grid, one due to scatter between surfaces (if `scattered` and
+    the bodies are rough), and one for each kind of library value with a spread.
+    """
+    own = quantity_of(companions.own)
+    errors = [np.abs(here - own)]
+    if companions.case.roughness and scattered:
+        values = np.array([own, *map(quantity_of, companions.others())])
+        half = half_interval(len(values)) * values.std(axis=0, ddof=1)
+        errors.append(np.abs(own - values.mean(axis=0)) + half)
+    for low, high in companions.material_ends():
+        ends = [np.abs(quantity_of(companions.curve(contact)) - own) for contact in (low, high)]
+        errors.append(np.maximum(*ends))
+    return errors
+
+
+def in_words(known: Mapping[str, Any], rows: Sequence[Row]) -> str:
+    """State pull-off force and sticking velocity in one line; empty without adhesion.
+
+    `known` is the result of `summary_of`.
+    """
+    adhesive = [
+        row for row in rows if row["loading_work_J"] > 0 and row.get("pull_off_force_N", 0.0) > 0
+    ]
+    if not adhesive:
+        return ""
+    forces = [_pull_off(row) for row in (adhesive[0], adhesive[-1])]
+    ratio = adhesive[0]["pull_off_force_N"] / adhesive[-1]["pull_off_force_N"]
+    range_of = forces[0] if abs(ratio - 1) < _ALIKE else f"{forces[0]} to {forces[1]}"
+    return f"{_sticks(known, adhesive)}; pull-off force {range_of}."
+
+
+def summary_of(pair: Sticking | None) -> dict[str, float | bool]:
+    """The entries of `summary.json` about sticking; empty if nothing is known."""
+    if pair is None:
+        return {}
+    error = pair.solver_error if pair.error is None else pair.error
+    return {
+        "sticks_below_m_per_s": pair.velocity,
+        "sticks_below_error_m_per_s": error,
+        "error_is_total": pair.error is not None,
+        "computed_down_to_m_per_s": pair.lowest,
+    }
+
+
+def stored(known: Mapping[str, Any]) -> Sticking | None:
+    """The inverse of `summary_of`."""
+    if not known:
+        return None
+    error = known["sticks_below_error_m_per_s"]
+    total = error if known["error_is_total"] else None
+    return Sticking(known["sticks_below_m_per_s"], error, known["computed_down_to_m_per_s"], total)
+
+
+def mean_of(pairs: Sequence[Sticking], one: Sticking | None) -> Sticking | None:
+    """Mean over several surfaces; `one` has the errors of one of them without scatter."""
+    if not pairs:
+        return None
+    velocities = np.array([pair.velocity for pair in pairs])
+    half = half_interval(len(pairs)) * float(velocities.std(ddof=1)) if len(pairs) > 1 else None
+    error = (
+        None if half is None or one is None or one.error is None else math.hypot(half, one.error)
+    )
+    lowest = min(pair.lowest for pair in pairs)
+    return Sticking(float(velocities.mean()), half or pairs[0].solver_error, lowest, error)
+
+
+# Losses below this fraction of the loading work are rounding, and pull-off forces that differ by
+# less than this fraction are printed as one.
+_NEGLIGIBLE, _ALIKE = 1e-6, 0.03
+
+
+@dataclass(frozen=True)
+class _Impact:
+    """Velocity (m/s) of an impact, and the energy it loses (J) with its error."""
+
+    velocity: float
+    loss: float
+    error: float
+
+    @classmethod
+    def of(cls, collision: Collision, velocity: float) -> _Impact:
+        loss = collision.loading_work - collision.unloading_work
+        error = math.hypot(collision.loading_work_error, collision.unloading_work_error)
+        return cls(velocity, loss, error)
+
+    def sticks_below(self, mass: float) -> float:
+        """The sticking velocity (m/s) if the loss did not depend on velocity."""
+        work = 0.5 * mass * self.velocity**2
+        if self.loss <= max(self.error, _NEGLIGIBLE * work):
+            return 0.0
+        return math.sqrt(2 * self.loss / mass)
+
+    def uncertainty(self, mass: float) -> float:
+        """Error (m/s) of `sticks_below`."""
+        velocity = self.sticks_below(mass)
+        if velocity == 0:
+            return math.sqrt(2 * max(self.loss, self.error, 0.0) / mass)
+        return self.error / (mass * velocity)
+
+
+def _search(begin: _Impact, impact: Callable[[float], _Impact], mass: float) -> Sticking:
+    """Iterate V → sqrt(2 L(V)/m*) from above: L grows slowly with V, so this converges."""
+    last = begin
+    velocity = last.sticks_below(mass)
+    for _ in range(_MOST_SOLVES):
+        if velocity == 0 or abs(velocity / last.velocity - 1) <= _NEAR:
+            return Sticking(velocity, last.uncertainty(mass), last.velocity)
+        try:
+            last = impact(velocity)
+        except RestitutionError:
+            break
+        velocity = last.sticks_below(mass)
+    change = abs(velocity - last.velocity)
+    return Sticking(velocity, math.hypot(last.uncertainty(mass), change), last.velocity)
+
+
+def _pull_off(row: Row) -> str:
+    force, error = row["pull_off_force_N"], row["pull_off_error_N"]
+    at = row["impact_velocity_m_per_s"]
+    where = "" if math.isnan(at) else f" after {quantity(at, 'm/s')}"
+    return f"{quantity(force, 'N')} ± {quantity(error, 'N')}{where}"
+
+
+def _sticks(known: Mapping[str, Any], rows: Sequence[Row]) -> str:
+    if not known and rows[-1]["sticks"]:
+        last = quantity(rows[-1]["impact_velocity_m_per_s"], "m/s")
+        return f"Sticks at every computed velocity, up to {last}"
+    if not known:
+        return 'Sticking velocity unknown (it needs densities and unloading.method = "path")'
+    velocity, error = known["sticks_below_m_per_s"], known["sticks_below_error_m_per_s"]
+    if velocity == 0:
+        return f"Sticks at no velocity above {quantity(error, 'm/s')}" if error else "Never sticks"
+    return f"Sticks below {quantity(velocity, 'm/s')} ± {quantity(error, 'm/s')}"
