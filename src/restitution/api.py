@@ -91,9 +91,11 @@ def open_results(folder: Folder) -> RunResults | StudyResults | PeriodicResults:
 
     The attribute `dataset` of the returned results is an xarray Dataset in SI units. Each of its
     variables has the attribute `units`. For a run, the dimension is `indentation_max`, or `depth`
-    if the case is periodic. For a study, the dimensions are `depth` and the swept keys, that is,
-    the keys of the case file that the study varies. Swept quantities are numeric coordinates with
-    units, so cases can be selected by value:
+    if the case is periodic. Its coordinate is the indentation (m), so
+    `dataset.restitution.sel(indentation_max=1e-7, method="nearest")` selects a depth; the impact
+    velocity is a coordinate, too. For a study, the dimensions are `depth` and the swept keys, that
+    is, the keys of the case file that the study varies. Swept quantities are numeric coordinates
+    with units, so cases can be selected by value:
     `open_results("study").dataset.sel({"roughness.rms": 1e-7}, method="nearest")`. The attribute
     `as_written` of a coordinate holds its values as written in the study file.
 

@@ -163,8 +163,8 @@ def test_a_line_is_fitted_from_three_roughnesses_on(stored):
     made = xr.Dataset(
         {
             name: ((*keys, "depth"), depths if name == "indentation" else cor)
-            for name in study.data_vars
-            if name != "status"
+            for name in study.variables
+            if name not in ("status", *keys)
         },
         {keys[0]: ["1 pm", "0.1 um", "0.2 um", "0.5 um"], keys[1]: ["1"]},
     )

@@ -64,7 +64,7 @@ def curves(study: xr.Dataset) -> list[Curve]:
     """Return the complete cases of a study, labelled with their swept values."""
     dims = [str(dim) for dim in study["restitution"].dims if dim != "depth"]
     stacked = study.stack(_case=dims).transpose("_case", "depth", ...)
-    keys = [str(key) for key in study.coords if str(key) != "case"]
+    keys = [str(key) for key in study.coords if key != "case" and "depth" not in study[key].dims]
     found = []
     for k in np.flatnonzero(stacked["status"].values == "complete"):
         case = stacked.isel(_case=k)

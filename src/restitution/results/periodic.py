@@ -16,6 +16,7 @@ from restitution.contact.cohesive import CohesiveState
 from restitution.contact.perimeter import corrected_area
 from restitution.contact.state import State
 from restitution.display import quantity, summary_html, summary_text
+from restitution.results.coordinates import with_coordinates
 from restitution.results.reader import read_json, read_netcdf
 from restitution.results.schema import Column
 from restitution.results.writer import curve_variables, dataset_with_maps
@@ -61,7 +62,7 @@ class PeriodicResults:
     @cached_property
     def dataset(self) -> xr.Dataset:
         """The whole content of `results.nc`, loaded into memory: curve and maps, in SI units."""
-        return read_netcdf(self.folder / "results.nc")
+        return with_coordinates(read_netcdf(self.folder / "results.nc"))
 
     @cached_property
     def summary(self) -> dict[str, Any]:

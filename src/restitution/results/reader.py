@@ -21,6 +21,7 @@ from restitution.case.case_file import parse_case
 from restitution.display import counted, quantity, summary_html, summary_text
 from restitution.errors import CaseError, OutputError, first_problem
 from restitution.results.checksums import check_file
+from restitution.results.coordinates import with_coordinates
 from restitution.results.interruption import hold_signals
 from restitution.results.schema import (
     ALL_COLUMNS,
@@ -149,7 +150,7 @@ class RunResults:
         for name in ("case", "derived_reduced_radius_m", "derived_contact_modulus_Pa"):
             if name not in results.attrs:
                 raise damaged(self._netcdf, f"the attribute {name} is missing")
-        return results
+        return with_coordinates(results)
 
     def smooth(self) -> xr.Dataset:
         """The smooth bodies' variables of `results.nc`, and all attributes of the file."""
@@ -309,7 +310,7 @@ class StudyResults:
     @cached_property
     def dataset(self) -> xr.Dataset:
         """The whole content of `study.nc`, loaded into memory."""
-        return read_netcdf(self.folder / "study.nc")
+        return with_coordinates(read_netcdf(self.folder / "study.nc"))
 
     def run(self, name: str) -> RunResults:
         """Return the results of the case `name`."""

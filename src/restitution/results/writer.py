@@ -36,6 +36,7 @@ from restitution.contact.state import State
 from restitution.contact.unloading_curve import complete_curve
 from restitution.errors import OutputError, one_line
 from restitution.results.checksums import CHECKSUMS, checksums
+from restitution.results.coordinates import with_coordinates
 from restitution.results.interruption import hold_signals
 from restitution.results.schema import (
     ALL_COLUMNS,
@@ -168,7 +169,7 @@ class ResultsFolder:
         packed = {str(name): {"zlib": True, "complevel": 1} for name in maps}
         with hold_signals():
             try:
-                write_netcdf(self.path / "results.nc", dataset, packed)
+                write_netcdf(self.path / "results.nc", with_coordinates(dataset), packed)
             except OutputError as error:
                 failed = {**summary, "status": "failed", "reason": one_line(str(error))}
                 with suppress(OutputError):

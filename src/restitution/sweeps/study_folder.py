@@ -17,6 +17,7 @@ import numpy as np
 import xarray as xr
 
 from restitution.errors import OutputError
+from restitution.results.coordinates import with_coordinates
 from restitution.results.interruption import hold_signals
 from restitution.results.locking import locked
 from restitution.results.reader import RunResults, read_json, read_text
@@ -128,7 +129,7 @@ class StudyFolder:
         cells = [curve.cells if curve else [] for curve in curves]
         rows = [curve.rows if curve else [] for curve in curves]
         write_table(self.path / "table.csv", self._rows(reasons, cells))
-        write_netcdf(self.path / "study.nc", self._dataset(reasons, rows))
+        write_netcdf(self.path / "study.nc", with_coordinates(self._dataset(reasons, rows)))
         write_checksums(self.path, ["study.nc", "study.toml", "table.csv"])
 
     def _rows(
