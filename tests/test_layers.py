@@ -11,6 +11,7 @@ ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "src" / "restitution"
 ROOMS = (
     "errors",
+    "arguments",
     "display",
     "theory",
     "numerics",

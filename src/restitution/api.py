@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from restitution.arguments import typed
 from restitution.errors import CaseError, OutputError, not_one_of
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 Folder = str | os.PathLike[str]
 
 
+@typed
 def run(
     case: Folder | Mapping[str, Any],
     *,
@@ -86,6 +88,7 @@ def _read(case: Folder | Mapping[str, Any]) -> tuple[Case, str, Path]:
         return parse_case(text), text, name
 
 
+@typed
 def open_results(folder: Folder) -> RunResults | StudyResults | PeriodicResults:
     """Open the stored results of a run, an ensemble, a convergence study or a study of many cases.
 
@@ -127,6 +130,7 @@ def open_results(folder: Folder) -> RunResults | StudyResults | PeriodicResults:
     return results
 
 
+@typed
 def law_of(results: Folder | RunResults) -> Law:
     """Make the restitution law and its fits from stored results, as `restitution fit-law` does.
 
@@ -149,6 +153,7 @@ def law_of(results: Folder | RunResults) -> Law:
     return read_law(folder) if (folder / LAW_FILE).is_file() else law_from(folder)
 
 
+@typed
 def collide_obliquely(
     results: Folder | RunResults | StoredForce,
     velocity: str | float,
@@ -224,6 +229,7 @@ def _laws_in(given: Folder | Law) -> list[Law]:
     return read_laws([folder]) if is_mixture(folder) else [law_of(folder)]
 
 
+@typed
 def export(
     laws: Folder | Law | Sequence[Folder | Law],
     *,

@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from restitution.arguments import typed
 from restitution.contact.cohesive import CohesiveState
 from restitution.contact.separation import RESTITUTION_ERROR, separate, separation_of
 from restitution.contact.state import State
@@ -27,6 +28,7 @@ UnloadingMethod = Literal["path", "energy-estimate"]
 _RELEASE_ERROR = {"crack-closure": 0.015, "pohrt-popov": 0.4}
 
 
+@typed
 @dataclass(frozen=True)
 class Collision:
     """Works of loading and unloading of one collision, and quantities that follow from these works.
@@ -108,6 +110,7 @@ class Collision:
     _repr_html_ = summary_html
 
 
+@typed
 def collide(
     state: State,
     unloading: Sequence[State] | None = None,

@@ -22,6 +22,10 @@ class CaseError(RestitutionError, ValueError):
     """Invalid values in a case file or in the arguments of a function."""
 
 
+class ArgumentError(CaseError, TypeError):
+    """An argument of a public function has a wrong type, is missing or is unknown."""
+
+
 class SurfaceError(RestitutionError, ValueError):
     """A surface or a topography file is not suitable for the requested operation."""
 

@@ -15,12 +15,13 @@ from tolerance import approx
 
 def test_what_is_no_pair_or_no_surface_is_refused_by_name(pair):
     flat = smooth(Grid(8, 1e-6))
+    call = r"call Contact\(pair, surface\), with "
     with pytest.raises(
-        CaseError, match=r"^pair: an object of type Body is not a pair of bodies; give Pair\("
+        CaseError, match=rf"^pair: a Body is not a Pair; {call}Pair\(first, second\)"
     ):
         Contact(pair.first, flat)
     with pytest.raises(
-        CaseError, match=r"^surface: an object of type ndarray is not a surface; give Surface\("
+        CaseError, match=rf"^surface: an array of shape .* is not a Surface; {call}Surface\("
     ):
         Contact(pair, np.zeros((8, 8)))
 

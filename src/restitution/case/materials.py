@@ -17,6 +17,7 @@ from typing import Annotated, Any, Generic, Self, TypeVar
 
 from pydantic import BeforeValidator, Field, model_validator
 
+from restitution.arguments import typed
 from restitution.case.quantities import Density, Pressure, SurfaceEnergy
 from restitution.case.schema import Table
 from restitution.display import quantity, summary_html, summary_text
@@ -92,6 +93,7 @@ class Material(Table):
     _repr_html_ = summary_html
 
 
+@typed
 def material(name: str) -> Material:
     """Look up a material of the library.
 
@@ -193,6 +195,7 @@ def adhesive() -> list[str]:
     return [key for key, one in materials().items() if one.surface_energy is not None]
 
 
+@typed
 @cache
 def materials() -> dict[str, Material]:
     """List the materials of the library.

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from restitution.arguments import typed
 from restitution.display import quantity, summary_html, summary_text
 from restitution.errors import CaseError
 from restitution.theory import yield_coefficient
 
 
+@typed
 @dataclass(frozen=True)
 class Body:
     """An isotropic elastic sphere, or a wall if the radius is infinite.
@@ -61,6 +63,7 @@ class Body:
     _repr_html_ = summary_html
 
 
+@typed
 @dataclass(frozen=True)
 class Pair:
     """Two bodies in normal contact.

@@ -17,6 +17,7 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.arguments import typed
 from restitution.contact.asperities import crest_gap_of, elongation_of
 from restitution.contact.bodies import Pair
 from restitution.contact.detachment import Detachment
@@ -41,6 +42,7 @@ FULL_CONSTRAINT = 2.8
 _OFF_NODE = 0.31, 0.17
 
 
+@typed
 @dataclass(frozen=True)
 class Contact:
     """A pair of bodies whose composite roughness is `surface`.
@@ -100,16 +102,6 @@ class Contact:
     periodic: bool = False
 
     def __post_init__(self) -> None:
-        if not isinstance(self.pair, Pair):
-            raise CaseError(
-                f"pair: {_kind(self.pair)} is not a pair of bodies; give Pair(first, second); for "
-                "two equal spheres give the same body twice"
-            )
-        if not isinstance(self.surface, Surface):
-            raise CaseError(
-                f"surface: {_kind(self.surface)} is not a surface; give Surface(height, grid), or "
-                "the result of generate_surface or read_surface"
-            )
         for name, value, known in (
             ("plasticity", self.plasticity, (None, *get_args(Plasticity))),
             ("approach", self.approach, get_args(Approach)),
@@ -357,10 +349,7 @@ def whole_grid(contact: Contact) -> Box:
     return slice(0, nx), slice(0, ny)
 
 
-def _kind(value: object) -> str:
-    return f"an object of type {type(value).__name__}"
-
-
+@typed
 def smooth(grid: Grid) -> Surface:
     """Make a surface without roughness.
 

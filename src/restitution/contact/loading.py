@@ -18,6 +18,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from restitution.arguments import typed
 from restitution.contact.adhesion import balances_are_reliable, grow_contact, unload_adhesive
 from restitution.contact.adhesive_work import pinning_error, work_by_balance, work_by_force
 from restitution.contact.cavity import bound_after, pressure_bound
@@ -58,6 +59,7 @@ _RATIO, _SHALLOW = 1.42, 0.2
 _WORK_RESIDUAL = 1e-6  # tolerance of intermediate solves; the force is far more accurate than this
 
 
+@typed
 def solve(
     contact: Contact, indentation: float, *, start: State | None = None, residual: float = RESIDUAL
 ) -> State:
@@ -92,6 +94,7 @@ def solve(
     return state
 
 
+@typed
 def step(state: State, indentation: float, *, residual: float = RESIDUAL) -> State:
     """Move a deformed contact to another indentation, deeper or shallower.
 

@@ -7,6 +7,7 @@ from functools import partial
 
 import numpy as np
 
+from restitution.arguments import typed
 from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import RESIDUAL
 from restitution.contact.loading import solve, step
@@ -17,6 +18,7 @@ from restitution.contact.state import State
 from restitution.errors import CaseError
 
 
+@typed
 def loading_path(
     contact: Contact,
     indentations: Iterable[float] | None = None,
@@ -62,6 +64,7 @@ def loading_path(
         yield state
 
 
+@typed
 def unloading_path(
     state: State,
     *,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+from restitution.arguments import typed
 from restitution.contact.cohesive_path import load_until
 from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import RESIDUAL
@@ -18,6 +19,7 @@ FORCE_TOLERANCE = 1e-8
 _SOLVE_RESIDUAL = 1e-10  # keeps the error of a solve well below the force tolerance
 
 
+@typed
 def solve_at_force(contact: Contact, force: float, *, start: State | None = None) -> State:
     """Load the undeformed bodies to `force`, within a relative error of 1e-8.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from restitution.arguments import typed
 from restitution.contact.contact import Contact, whole_grid
 from restitution.contact.equilibrium import (
     MAX_ITERATIONS,
@@ -24,6 +25,7 @@ from restitution.numerics.quadratic.prescribed_mean import MeanTarget, minimise_
 PRESSURE_TOLERANCE = 1e-8
 
 
+@typed
 def solve_at_pressure(contact: Contact, pressure: float, *, residual: float = RESIDUAL) -> State:
     """Load a periodic contact to a nominal pressure, within a relative error of 1e-8.
 

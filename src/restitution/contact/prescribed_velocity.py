@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+from restitution.arguments import typed
 from restitution.contact.checks.edge import require_inside_grid
 from restitution.contact.cohesive_path import load_until
 from restitution.contact.contact import Contact
@@ -22,6 +23,7 @@ _MAX_GROWTH = 3.0  # largest ratio of two successive trial depths
 _MOST_STEPS = 8  # largest number of Newton steps
 
 
+@typed
 def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None = None) -> State:
     """Load the undeformed bodies until the loading work is ½ m* V².
 

@@ -13,10 +13,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.arguments import typed
 from restitution.display import quantity, summary_html, summary_text
 from restitution.errors import CaseError, shown
 
 
+@typed
 @dataclass(frozen=True, init=False)
 class Grid:
     """Uniform rectangular grid of cells.

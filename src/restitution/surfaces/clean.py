@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from restitution.arguments import typed
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.surfaces.fill import fill_harmonically
@@ -20,6 +21,7 @@ _SIGMA = 1.4826  # normal distribution: standard deviation divided by median abs
 _MOST = 0.1  # largest fraction of pixels that may be outliers
 
 
+@typed
 def crop(surface: Surface, *, x: Range | None = None, y: Range | None = None) -> Surface:
     """Keep only the pixels whose centres lie within ranges of x and y.
 
@@ -72,6 +74,7 @@ def crop(surface: Surface, *, x: Range | None = None, y: Range | None = None) ->
     )
 
 
+@typed
 def remove_outliers(surface: Surface, threshold: float) -> Surface:
     """Replace outliers by harmonic interpolation of the pixels around them.
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from restitution.arguments import typed
 from restitution.errors import SurfaceError
 from restitution.surfaces.surface import Surface, is_periodic
 
@@ -23,6 +24,7 @@ _COMBINED: dict[str, Callable[[list[Any]], str | float]] = {
 }
 
 
+@typed
 def composite(surfaces: Sequence[Surface]) -> Surface:
     """Sum the heights of several surfaces on the same grid.
 

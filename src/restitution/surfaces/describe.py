@@ -11,6 +11,7 @@ import math
 
 import numpy as np
 
+from restitution.arguments import typed
 from restitution.surfaces.surface import Array, Surface
 
 # Value of the autocorrelation that defines the correlation length (Hu and Tonder 1992), as in
@@ -18,6 +19,7 @@ from restitution.surfaces.surface import Array, Surface
 _CORRELATION_LEVEL = 0.1
 
 
+@typed
 def describe(surface: Surface) -> dict[str, float | None]:
     """Compute height, slope and correlation parameters, after ISO 25178-2:2012.
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from typing import Literal, get_args
 
+from restitution.arguments import typed
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.surfaces.mirror import mirrored
@@ -18,6 +19,7 @@ from restitution.surfaces.twin import twin
 Extension = Literal["twin", "mirror"]
 
 
+@typed
 def extend(
     surface: Surface, to: Grid | tuple[float, float], how: Extension, *, seed: int | None = None
 ) -> Surface:

@@ -16,6 +16,7 @@ from typing import Literal, TypedDict, Unpack
 
 import numpy as np
 
+from restitution.arguments import typed
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.surfaces.heights import adjusted, distribution, filtered, in_order
@@ -49,6 +50,7 @@ _WAVES: dict[str, tuple[str, ...]] = {
 }
 
 
+@typed
 def generate_surface(
     grid: Grid,
     *,

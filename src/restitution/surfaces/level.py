@@ -7,6 +7,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
+from restitution.arguments import typed
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.surfaces.surface import Array, Surface
@@ -15,6 +16,7 @@ Levelling = Literal["none", "center", "tilt", "curvature"]
 _DEGREE = {"center": 0, "tilt": 1, "curvature": 2}
 
 
+@typed
 def level(surface: Surface, how: Levelling) -> Surface:
     """Subtract the mean, or the least-squares plane or paraboloid, from the heights.
 

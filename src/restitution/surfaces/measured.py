@@ -11,6 +11,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
+from restitution.arguments import typed
 from restitution.errors import SurfaceError, shown
 from restitution.numerics.grid import Grid
 from restitution.surfaces.fill import fill_harmonically
@@ -39,6 +40,7 @@ _TALLEST = 10.0
 _LARGEST = 2**30  # largest size of a file (bytes)
 
 
+@typed
 def read_surface(
     path: str | os.PathLike[str],
     *,

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from restitution.arguments import typed
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.surfaces.surface import Array, Surface, is_periodic
 
 
+@typed
 def refine(surface: Surface, factor: int) -> Surface:
     """Resample a surface to smaller cells over the same domain.
 

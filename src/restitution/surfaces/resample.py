@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from restitution.arguments import typed
 from restitution.numerics.grid import Grid
 from restitution.surfaces.describe import rms_slope
 from restitution.surfaces.refused import RefusedSurfaceError
@@ -16,6 +17,7 @@ from restitution.surfaces.surface import Array, Surface
 _ROUNDING = 1e-9  # largest relative difference of two lengths that count as equal
 
 
+@typed
 def place_on_grid(surface: Surface, grid: Grid) -> Surface:
     """Resample the middle of a surface to the cells of a grid.
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.arguments import typed
 from restitution.display import quantity, summary_html, summary_text
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
@@ -16,6 +17,7 @@ from restitution.numerics.read_only import read_only
 Array = NDArray[np.float64]
 
 
+@typed
 @dataclass(frozen=True, eq=False)
 class Surface:
     """Heights on a grid, and their provenance.

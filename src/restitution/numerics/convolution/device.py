@@ -20,6 +20,7 @@ import ducc0
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.arguments import typed
 from restitution.errors import CaseError
 from restitution.numerics import kernels
 
@@ -186,6 +187,7 @@ def current() -> Device:
     return _current.get()
 
 
+@typed
 @contextmanager
 def on_device(device: DeviceName | Device) -> Iterator[Device]:
     """Run the solves in a `with` block on a device.
