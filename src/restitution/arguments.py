@@ -55,9 +55,8 @@ def _checking(call: Callable[..., Any], name: str, skip: int = 0) -> Callable[..
                 f"{key}: {_described(given[key])} is not {_words(hint)}"
                 for key, hint in wrong.items()
             )
-            made = " and ".join(
-                dict.fromkeys(call for of in wrong.values() for call in _makers(of))
-            )
+            makers = dict.fromkeys(maker for hint in wrong.values() for maker in _makers(hint))
+            made = " and ".join(makers)
             right = _call(name, own, wrong) + (f", with {made}" if made else "")
             raise ArgumentError(f"{said}; call {right}")
         return call(*args, **kwargs)

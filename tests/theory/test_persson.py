@@ -42,3 +42,12 @@ def test_fields_and_pressures_broadcast():
 def test_slopes_that_are_not_positive_are_refused():
     with pytest.raises(CaseError, match="rms_slope"):
         Persson(0.0, 112e9)
+
+
+def test_the_density_of_the_pressure_sums_to_area_and_force():
+    slope, p = 0.1 * 112e9, 2e9
+    local = np.linspace(0, 12 * slope, 200_001)
+    density = FLAT.pressure_density(local, p)
+    assert density[0] == 0
+    assert np.trapezoid(density, local) == approx(float(FLAT.relative_area(p)), rel=1e-8)
+    assert np.trapezoid(local * density, local) == approx(p, rel=1e-8)

@@ -83,10 +83,28 @@ _REFERENCES = (
 )
 
 
+_PERIODIC = (
+    ("displacement of the half-space", "periodic waves, 2/(E* |q|)", "Johnson (1985), §13.2"),
+    _ALWAYS[2],
+    (
+        "contact area",
+        "nodes in contact, corrected for the staircase edge",
+        "Yastrebov, Anciaux and Molinari (2017), Tribol. Int. 114, 161–171",
+    ),
+    ("stiffness", "linear problem on the nodes in contact", ""),
+)
+_PERSSON = (
+    "reference",
+    "diffusion of the contact pressure with magnification, elastic",
+    "Persson (2001), J. Chem. Phys. 115, 3840–3861",
+)
+
+
 def methods(summary: Mapping[str, Any]) -> Table:
     """Make the table of the methods of a run; `summary` is the content of its `summary.json`."""
     model = summary["model"]
-    rows = list(_ALWAYS)
+    periodic = model["half_space"].startswith("periodic")
+    rows = list(_PERIODIC if periodic else _ALWAYS)
     if model["plasticity"] != "none":
         rows.append(_YIELD[model["plasticity"]])
     if model["adhesion"] != "none":
@@ -95,6 +113,6 @@ def methods(summary: Mapping[str, Any]) -> Table:
     source = summary.get("surface", {}).get("source")
     if source in _ROUGHNESS:
         rows.append(_ROUGHNESS[source])
-    rows += _REFERENCES
+    rows += [_PERSSON] if periodic else _REFERENCES
     versions = ", ".join(f"{name} {number}" for name, number in summary["versions"].items())
     return Table("Methods", ["quantity", "method", "source"], rows, [f"Computed with {versions}."])

@@ -6,14 +6,17 @@ from pathlib import Path
 
 from restitution.errors import OutputError, RestitutionError, one_line
 from restitution.pages.mixture import write_mixture_page
+from restitution.pages.periodic import write_periodic_page
 from restitution.pages.run import write_run_page
 from restitution.pages.study import write_study_page
 from restitution.pages.surface import write_surface_page
+from restitution.results.schema import PERIODIC_FILE
 
 # For each kind of results, a file that identifies it and the function that writes its page.
 _PAGES = {
     "mixture.toml": write_mixture_page,
     "study.toml": write_study_page,
+    PERIODIC_FILE: write_periodic_page,  # before results.nc, which such a folder also holds
     "results.nc": write_run_page,
     "surface.nc": write_surface_page,
 }

@@ -40,7 +40,7 @@ def write_run_page(out: Path) -> Path:
             parts.append(_pressure(results))
     parts += [
         _diagnostics(results, summary),
-        *_groups(summary),
+        *groups(summary),
         Listing("Case file", results.attrs["case"]),
         methods(summary),
     ]
@@ -110,26 +110,35 @@ def _force(results: xr.Dataset) -> Drawing:
 
 
 def _pressure(results: xr.Dataset) -> Drawing:
-    pressure, depth = results["pressure"].values, results.get("plastic_displacement")
-    pressed = [1e-6 * pressure[pressure != 0]]
-    quantities, yields = ["pressure (MPa)"], ""
-    if depth is not None and depth.any():
-        pressed.append(1e6 * depth.values[depth.values != 0])
-        quantities.append("plastic displacement (µm)")
-        yields = " Plastic displacement: the depth by which yielding has lowered the surface."
+    lowered = "plastic_displacement" in results and bool(results["plastic_displacement"].any())
+    yields = " Plastic displacement: the depth by which yielding has lowered the surface."
+    most = 1e-6 * float(results["pressure"].max())
     return Drawing(
         "Contact pressure",
         pressure_map(results),
-        f"Map of the contact pressure at the largest indentation, up to {pressed[0].max():.4g} MPa",
-        f"At the largest indentation; areas without contact are blank.{yields}",
-        Table(
-            "Distribution over the contact",
-            ["percentile", *quantities],
-            [
-                [share, *(float(np.percentile(values, share)) for values in pressed)]
-                for share in (10, 50, 90, 100)
-            ],
-        ),
+        f"Map of the contact pressure at the largest indentation, up to {most:.4g} MPa",
+        f"At the largest indentation; areas without contact are blank.{yields * lowered}",
+        pressure_percentiles(results),
+    )
+
+
+def pressure_percentiles(results: xr.Dataset) -> Table:
+    """Make a table of percentiles of the maps of pressure and plastic displacement."""
+    columns = {
+        f"{words} ({unit})": scale * results[name].values[results[name].values != 0]
+        for name, words, scale, unit in (
+            ("pressure", "pressure", 1e-6, "MPa"),
+            ("plastic_displacement", "plastic displacement", 1e6, "µm"),
+        )
+        if name in results and results[name].values.any()
+    }
+    return Table(
+        "Distribution over the contact",
+        ["percentile", *columns],
+        [
+            [share, *(float(np.percentile(values, share)) for values in columns.values())]
+            for share in (10, 50, 90, 100)
+        ],
     )
 
 
@@ -147,7 +156,8 @@ def _diagnostics(results: xr.Dataset, summary: Mapping[str, Any]) -> Table:
     return Table("Diagnostics", ["quantity", "value"], rows)
 
 
-def _groups(summary: Mapping[str, Any]) -> Iterator[Table]:
+def groups(summary: Mapping[str, Any]) -> Iterator[Table]:
+    """Yield a table for each group of quantities in `summary.json`."""
     for key, title in (
         ("derived", "Derived quantities"),
         ("surface_statistics", "Surface"),

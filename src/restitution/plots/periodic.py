@@ -1,4 +1,4 @@
-"""Figures of a periodic contact: area and gap against nominal pressure, and a pressure map."""
+"""Figures of a periodic contact: area, gap, stiffness and local pressures at nominal pressures."""
 
 from __future__ import annotations
 
@@ -7,16 +7,59 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
-from restitution.plots.figure import DASHED, GREY, Axis, Chart, Figure, Line, Map, Points, Series
+from restitution.display import quantity
+from restitution.plots.figure import (
+    DASHED,
+    GREY,
+    PALETTE,
+    Array,
+    Axis,
+    Chart,
+    Figure,
+    Line,
+    Map,
+    Points,
+    Series,
+)
 from restitution.theory import Persson
+
+_NOMINAL = Axis("nominal pressure", "MPa", "log")
+_SHOWN = 4  # number of depths whose distributions of pressure are drawn
 
 
 def periodic_figures(results: xr.Dataset) -> Iterator[tuple[str, Figure]]:
     """Yield the name and the content of every figure of `results` (from `results.nc`)."""
-    if (results["nominal_pressure"].values > 0).any():
+    if _pressed(results).sizes["depth"]:
         yield "area-pressure", area_against_pressure(results)
+        if has_stiffness(results):
+            yield "stiffness-pressure", stiffness_against_pressure(results)
+    if has_distribution(results):
+        yield "pressure-distribution", pressure_distribution(results)
     if results["pressure"].values.any():
-        yield "pressure", _pressure_map(results)
+        yield "pressure", pressure_map(results)
+
+
+def has_stiffness(results: xr.Dataset) -> bool:
+    """Whether `results` contain a stiffness that can be drawn on logarithmic axes."""
+    return "stiffness" in results and bool((_pressed(results)["stiffness"].values > 0).any())
+
+
+def has_distribution(results: xr.Dataset) -> bool:
+    """Whether `results` contain a distribution of the contact pressure."""
+    return "pressure_density" in results and bool(results["pressure_density"].values.any())
+
+
+def persson(results: xr.Dataset) -> Persson | None:
+    """Persson's theory for the roughness and the bodies of `results`; None without roughness."""
+    slope, E_star = (
+        float(results.attrs[f"derived_{name}"]) for name in ("rms_slope", "contact_modulus_Pa")
+    )
+    return Persson(slope, E_star) if slope > 0 else None
+
+
+def _pressed(results: xr.Dataset) -> xr.Dataset:
+    """The depths with a positive nominal pressure; attraction can make it negative."""
+    return results.isel(depth=results["nominal_pressure"].values > 0)
 
 
 def area_against_pressure(results: xr.Dataset) -> Figure:
@@ -24,31 +67,59 @@ def area_against_pressure(results: xr.Dataset) -> Figure:
 
     For comparison, a dashed line shows the contact area from Persson's theory of elastic contact.
     """
-    title = results.attrs.get("title", "")
-    # Leave out negative nominal pressures (due to attraction), because the axis is logarithmic.
-    results = results.isel(depth=results["nominal_pressure"].values > 0)
-    pressure = results["nominal_pressure"].values
-    p = 1e-6 * pressure
-    along = Axis("nominal pressure", "MPa", "log")
-    area = 100 * results["corrected_relative_area"].values
-    unresolved = ~results["resolved"].values.astype(bool)
-    series: list[Series] = [Points(p, area, "this contact", joined=True, open=unresolved)]
-    slope = float(results.attrs["derived_rms_slope"])
-    E_star = float(results.attrs["derived_contact_modulus_Pa"])
-    if slope > 0:
-        theory = 100 * Persson(slope, E_star).relative_area(pressure)
-        series.append(Line(p, theory, "elastic, Persson (2001)", color=GREY, dash=DASHED))
-    gap = Points(p, 1e9 * results["mean_gap"].values, joined=True)
+    pressed = _pressed(results)
+    p = 1e-6 * pressed["nominal_pressure"].values
+    area = 100 * pressed["corrected_relative_area"].values
+    unresolved = ~pressed["resolved"].values.astype(bool)
+    series: list[Series] = [
+        Points(p, area, "this contact", joined=True, open=unresolved, open_label="not resolved")
+    ]
+    if theory := persson(results):
+        line = 100 * theory.relative_area(pressed["nominal_pressure"].values)
+        series.append(Line(p, line, "elastic, Persson (2001)", color=GREY, dash=DASHED))
+    gap = Points(p, 1e9 * pressed["mean_gap"].values, joined=True)
     return Figure(
-        title,
+        results.attrs.get("title", ""),
         [
-            Chart(along, Axis("relative contact area", "%", "log"), series),
-            Chart(along, Axis("mean gap", "nm"), [gap]),
+            Chart(_NOMINAL, Axis("relative contact area", "%", "log"), series),
+            Chart(_NOMINAL, Axis("mean gap", "nm"), [gap]),
         ],
     )
 
 
-def _pressure_map(results: xr.Dataset) -> Figure:
+def stiffness_against_pressure(results: xr.Dataset) -> Figure:
+    """Plot the normal stiffness against nominal pressure, beside a line of proportionality."""
+    pressed = _pressed(results)
+    pressed = pressed.isel(depth=pressed["stiffness"].values > 0)
+    p, k = 1e-6 * pressed["nominal_pressure"].values, 1e-15 * pressed["stiffness"].values
+    guide = Line(p, k[0] * p / p[0], "proportional to pressure", color=GREY, dash=DASHED)
+    points = Points(p, k, "this contact", joined=True)
+    axis = Axis("normal stiffness", "MPa/nm", "log")
+    return Figure(results.attrs.get("title", ""), [Chart(_NOMINAL, axis, [points, guide])])
+
+
+def pressure_distribution(results: xr.Dataset) -> Figure:
+    """Plot the distribution of the contact pressure at some depths, beside Persson's theory."""
+    title, theory = results.attrs.get("title", ""), persson(results)
+    carrying = np.flatnonzero(results["pressure_density"].values.any(axis=1))
+    shown = carrying[np.unique(np.linspace(0, carrying.size - 1, _SHOWN).round().astype(int))]
+    series: list[Series] = []
+    for number, colour in zip(shown, PALETTE, strict=False):
+        depth = results.isel(depth=int(number))
+        local, nominal = depth["binned_pressure"].values, float(depth["nominal_pressure"])
+        density = depth["pressure_density"].values
+        label = f"at {quantity(nominal, 'Pa')}"
+        series.append(Line(1e-9 * local, 1e9 * density, label, label, color=colour, step=True))
+        if theory is not None and nominal > 0:
+            fine: Array = np.linspace(0, float(local.max()), 200)
+            line = 1e9 * theory.pressure_density(fine, nominal)
+            series.append(Line(1e-9 * fine, line, "elastic, Persson (2001)", label, colour, DASHED))
+    axes = Axis("contact pressure", "GPa"), Axis("fraction of nominal area", "1/GPa", "log")
+    return Figure(title, [Chart(*axes, series)])
+
+
+def pressure_map(results: xr.Dataset) -> Figure:
+    """Draw a map of the contact pressure at the deepest state; tension and gaps are left blank."""
     values = 1e-6 * np.where(results["pressure"].values > 0, results["pressure"].values, np.nan)
     x, y = (1e6 * results[name].values for name in ("x", "y"))
     down = results.attrs.get("surface_y_axis") == "down"

@@ -18,6 +18,7 @@ _BESIDE = (
     "smooth_impact_velocity",
     "nominal_pressure",
     "unloading_indentation",
+    "binned_pressure",
 )
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -12,10 +14,17 @@ from restitution.case.derived import deepest_indentation, derived_quantities
 from restitution.case.roughness import MeasuredRoughness
 from restitution.contact.checks.resolution import unresolved_patches
 from restitution.contact.state import State
+from restitution.contact.stiffness import normal_stiffness
+from restitution.errors import NotConvergedError
 from restitution.numerics.convolution.device import current
 from restitution.numerics.kernels import instruction_set
 from restitution.results.interruption import hold_signals
-from restitution.results.periodic import periodic_dataset, periodic_row
+from restitution.results.periodic import (
+    Histogram,
+    periodic_dataset,
+    periodic_row,
+    pressure_histogram,
+)
 from restitution.results.schema import PERIODIC_FILE
 from restitution.results.writer import (
     ResultsFolder,
@@ -32,6 +41,7 @@ from restitution.surfaces import describe
 CONVENTIONS = {
     "indentation": "approach of the mean planes of the two surfaces since first touch",
     "nominal_pressure": "normal force divided by the area of one period",
+    "stiffness": "nominal pressure per approach of the mean planes, at a constant contact area",
     "works": "of one period, without the work of uniform compression by the mean pressure",
 }
 
@@ -50,9 +60,11 @@ def run_periodic(
     are written.
     """
     log, deepest = RunLog(progress, warn), list[State]()
+    histograms: list[Histogram] = []
 
     with log.record(
-        out, lambda: _write_results(case, text, out, log, deepest[-1]) if deepest else {}
+        out,
+        lambda: _write_results((case, text), out, log, deepest[-1], histograms) if deepest else {},
     ):
         contact = case.contact(folder)
         last = deepest_indentation(case)
@@ -62,8 +74,10 @@ def run_periodic(
         depths = case.depths()
         for number, depth in enumerate(depths, 1):
             state = load_to(case, contact, depth, deepest[-1] if deepest else None)
+            row = periodic_row(state, _stiffness(state))
             with hold_signals():  # an interruption leaves a complete row or no row
-                out.rows.append(periodic_row(state))
+                out.rows.append(row)
+                histograms.append(pressure_histogram(state))
                 deepest[:] = [state]
                 write_table(out.path / PERIODIC_FILE, out.rows)
             progress(f"{number} of {len(depths)} depths")
@@ -81,10 +95,22 @@ def _edges_of_scans(case: Case) -> list[str]:
     ]
 
 
+def _stiffness(state: State) -> float:
+    """Stiffness (Pa/m) of `state`; NaN if it is not defined."""
+    with suppress(NotConvergedError):
+        return normal_stiffness(state)
+    return math.nan
+
+
 def _write_results(
-    case: Case, text: str, out: ResultsFolder, log: RunLog, deepest: State
+    read: tuple[Case, str],
+    out: ResultsFolder,
+    log: RunLog,
+    deepest: State,
+    histograms: Sequence[Histogram],
 ) -> dict[str, Any]:
-    contact, rows = deepest.contact, out.rows
+    """Write the results of the case `read` and its text; return the summary."""
+    (case, text), contact, rows = read, deepest.contact, out.rows
     found = unresolved_patches(
         [row["indentation_m"] for row in rows], [row["median_patch_nodes"] for row in rows]
     )
@@ -114,7 +140,7 @@ def _write_results(
         "seconds": log.seconds,
         "versions": versions(),
     }
-    dataset = periodic_dataset(rows, deepest)
+    dataset = periodic_dataset(rows, histograms, deepest)
     dataset.attrs = status_attributes(summary) | case_attributes(summary, text)
     out.write(dataset, summary)
     return summary

@@ -59,3 +59,21 @@ class Persson(PositiveFields):
         """
         reduced = touching(pressure) / (self.contact_modulus * self.rms_slope)
         return scalar_or_array(_erf(math.sqrt(2) * reduced))
+
+    def pressure_density(self, local: Values, pressure: Values) -> Array:
+        """Distribution of the contact pressure, as a fraction of the nominal area per pressure.
+
+        The diffusion equation has the solution exp(−(p − p₀)²/2s²) − exp(−(p + p₀)²/2s²), divided
+        by s √(2π), with s = E* h′/2. Its integral over p is the relative area.
+
+        Args:
+            local: Contact pressure p (Pa), positive.
+            pressure: Nominal pressure p₀ (Pa).
+
+        Returns:
+            Density (1/Pa).
+        """
+        p, p_0 = np.asarray(local, dtype=float), np.asarray(touching(pressure), dtype=float)
+        s = 0.5 * np.asarray(self.contact_modulus) * np.asarray(self.rms_slope)
+        bells = np.exp(-0.5 * ((p - p_0) / s) ** 2) - np.exp(-0.5 * ((p + p_0) / s) ** 2)
+        return scalar_or_array(bells / (math.sqrt(2 * math.pi) * s))
