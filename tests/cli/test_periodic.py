@@ -19,6 +19,7 @@ periodic = true
 [pressure]
 values = ["0.5 GPa", "1 GPa"]
 """
+DEPTHS = '[indentation]\nvalues = ["60 nm", "120 nm"]'
 
 
 def test_check_run_and_what_a_periodic_case_is_not_for(cli, refused, tmp_path):
@@ -31,20 +32,53 @@ def test_check_run_and_what_a_periodic_case_is_not_for(cli, refused, tmp_path):
     status, said, _ = cli("run", case, "-o", out)
     assert status == 0
     assert "mean gap (nm)" in said
-    assert "restitution report" not in said
+    assert "restitution report" in said
     assert {path.name for path in out.iterdir()} == {
         "SHA256SUMS",
         "area-pressure.png",
         "periodic.csv",
+        "pressure-distribution.png",
         "pressure.png",
         "results.nc",
+        "stiffness-pressure.png",
         "summary.json",
     }
-    for call in (("report", out), ("fit-law", out, "-o", tmp_path / "law")):
-        assert "a periodic contact, which has no restitution" in refused(*call)
-    assert "grid.periodic" in refused("compare-theory", case)
+    for call in (
+        ("fit-law", out, "-o", tmp_path / "law"),
+        ("simulate", out),
+        ("compare", out, out),
+    ):
+        words = refused(*call)
+        assert "a periodic contact, which has no restitution" in words
+        assert "`restitution report`" in words
     assert "grid.periodic" in refused("converge", case, "-o", tmp_path / "other")
     assert not (tmp_path / "other").exists()
+
+
+def test_the_area_is_compared_with_persson(cli, refused, tmp_path):
+    case, out = tmp_path / "case.toml", tmp_path / "out"
+    case.write_text(CASE)
+    status, said, warned = cli("compare-theory", case)
+    assert (status, warned) == (0, "")
+    assert "Relative contact area of the rough surface; a periodic contact has no COR" in said
+    assert "computed (%)" not in said
+    theory = [float(line.split()[1]) for line in said.splitlines()[2:4]]
+    assert cli("run", case, "-o", out)[0] == 0
+    status, said, _ = cli("compare-theory", out, "-o", tmp_path / "theory")
+    assert status == 0
+    with (tmp_path / "theory" / "theory.csv").open() as file:
+        rows = [{key: float(cell) for key, cell in row.items()} for row in csv.DictReader(file)]
+    with (out / "periodic.csv").open() as file:
+        stored = list(csv.DictReader(file))
+    for row, computed, area in zip(rows, stored, theory, strict=True):
+        assert row["computed"] == float(computed["corrected_relative_area"])
+        assert row["stiffness_Pa_per_m"] == float(computed["stiffness_Pa_per_m"])
+        assert abs(100 * row["persson"] / area - 1) < 1e-3
+        assert f"{row['computed'] / row['persson']:.3f}" in said
+    assert (tmp_path / "theory" / "theory.png").exists()
+    assert "has no restitution law" in refused("compare-theory", out, "--law", out)
+    case.write_text(CASE.replace('[pressure]\nvalues = ["0.5 GPa", "1 GPa"]', DEPTHS))
+    assert "only a run tells the nominal pressures" in refused("compare-theory", case)
 
 
 def test_a_periodic_case_with_adhesion(cli, refused, tmp_path):

@@ -6,10 +6,13 @@ import math
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import restitution as rs
 from restitution.case.case_file import parse_case
+from restitution.contact.stiffness import normal_stiffness
 from restitution.errors import CaseError, DomainError, OutputError
+from restitution.pages.report import write_report
 from restitution.plots.periodic import periodic_figures
 from restitution.results.periodic import COLUMNS
 from restitution.results.reader import read_run
@@ -65,10 +68,20 @@ def test_a_run_stores_the_states_of_its_pressures(tmp_path):
         assert float(row["stored_energy_J"]) == approx(state.stored_energy)
         assert float(row["loading_work_J"]) == approx(state.loading_work)
         assert float(row["corrected_relative_area"]) < state.relative_area
+        assert float(row["stiffness_Pa_per_m"]) == approx(normal_stiffness(state), rel=1e-6)
     data = results.dataset
     assert data["nominal_pressure"].values == approx(np.geomspace(50e6, 1e9, 3))
     assert data["pressure"].values == approx(state.pressure, abs=1e-6 * state.pressure.max())
     assert data["mean_gap"].attrs["units"] == "m"
+    for number, row in enumerate(rows):  # the sum of the distribution is the area and the force
+        of = data.isel(depth=number)
+        width = float(of["binned_pressure"][1] - of["binned_pressure"][0])
+        density = of["pressure_density"].values
+        assert width * density.sum() == approx(float(row["relative_area"]))
+        force = width * float(density @ of["binned_pressure"].values)
+        assert force == approx(float(row["nominal_pressure_Pa"]), rel=0.01)
+    assert results.rows[-1]["largest_pressure_Pa"] == float(rows[-1]["largest_pressure_Pa"])
+    assert float(data["mean_gap"].sel(depth=0.0, method="nearest")) == data["mean_gap"].values[0]
     summary = json.loads((tmp_path / "out" / "summary.json").read_text())
     assert summary == results.summary
     assert summary["status"] == data.attrs["status"] == "complete"
@@ -82,7 +95,16 @@ def test_a_run_stores_the_states_of_its_pressures(tmp_path):
 def test_the_figures_show_the_area_beside_that_of_persson(tmp_path):
     data = run(CASE, tmp_path).dataset
     figures = dict(periodic_figures(data))
-    assert list(figures) == ["area-pressure", "pressure"]
+    assert list(figures) == [
+        "area-pressure",
+        "stiffness-pressure",
+        "pressure-distribution",
+        "pressure",
+    ]
+    stiffness = figures["stiffness-pressure"].panels[0].series[0]
+    assert stiffness.y == approx(1e-15 * data["stiffness"].values)
+    labels = [line.label for line in figures["pressure-distribution"].panels[0].series]
+    assert labels == ["at 50 MPa", "at 223.6 MPa", "at 1 GPa", *["elastic, Persson (2001)"] * 3]
     area, gap = figures["area-pressure"].panels
     points, theory = area.series
     assert points.y == approx(100 * data["corrected_relative_area"].values)
@@ -183,6 +205,40 @@ def test_a_scan_whose_edges_do_not_match_is_warned_of(tmp_path):
     measured = '[roughness]\nkind = "measured"\nfile = "scan.npy"\nsize = "16 um"\n'
     with pytest.warns(UserWarning, match=r"roughness\.file: the opposite edges"):
         run((CASE[:start] + measured + CASE[end:]).replace("50 MPa", "0.5 GPa"), tmp_path)
+
+
+def test_the_page_of_a_periodic_contact(tmp_path):
+    out = run(CASE, tmp_path).folder
+    page = write_report(out).read_text()
+    for words in (
+        "Contact area and mean gap",
+        "Normal stiffness",
+        "Distribution of the contact pressure",
+        "Persson (2001)",
+        "1 GPa",
+    ):
+        assert words in page
+    assert "unloading work" not in page
+
+
+def test_the_page_of_results_of_earlier_versions(tmp_path):
+    out = run(CASE, tmp_path).folder
+    with xr.open_dataset(out / "results.nc") as stored:
+        old = stored.load()
+    bare = old.drop_vars(["stiffness", "pressure_density", "binned_pressure", "depth"])
+    (out / "results.nc").unlink()
+    bare.reset_coords("nominal_pressure").to_netcdf(out / "results.nc")
+    (out / "SHA256SUMS").unlink()
+    page = write_report(out).read_text()
+    assert "Contact area and mean gap" in page
+    assert "Normal stiffness" not in page
+
+
+def test_complete_contact_has_no_stiffness(tmp_path):
+    data = run(CASE.replace('"1 GPa"', '"100 GPa"'), tmp_path).dataset
+    assert data["relative_area"].values[-1] == 1
+    assert np.isfinite(data["stiffness"].values).tolist() == [True, True, False]
+    assert "stiffness-pressure" in dict(periodic_figures(data))
 
 
 def test_the_derived_quantities_have_no_radius(tmp_path):

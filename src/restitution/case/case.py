@@ -247,8 +247,8 @@ class Case(Table):
         """Raise `CaseError` for a periodic contact, which has no impact and no restitution."""
         if self.periodic:
             raise CaseError(
-                "grid.periodic: a periodic contact has no restitution, and only `restitution run`, "
-                "`check` and `surface` accept a periodic case"
+                "grid.periodic: a periodic contact has no restitution; give this case to "
+                "`restitution run`, `check`, `surface` or `compare-theory`"
             )
 
     @property

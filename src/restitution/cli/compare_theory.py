@@ -9,14 +9,23 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.table import Column, Table
 
-from restitution.cli.parameters import CaseFile, FigureFormat, Figures
+from restitution.cli.parameters import FigureFormat, Figures
+from restitution.errors import CaseError
 
 if TYPE_CHECKING:
     from restitution.laws.theories import Theory
 
 
 def compare_theory(
-    case: CaseFile,
+    case: Annotated[
+        Path,
+        typer.Argument(
+            metavar="CASE",
+            help="Case file (TOML), or the results folder of a periodic contact.",
+            show_default=False,
+            readable=False,
+        ),
+    ],
     out: Annotated[
         Path | None,
         typer.Option(
@@ -39,18 +48,34 @@ def compare_theory(
     ] = None,
     figures: Figures = FigureFormat.png,
 ) -> None:
-    """Print COR against velocity for the smooth bodies of CASE, from closed-form theories."""
+    """Print COR against velocity for the smooth bodies of CASE, from closed-form theories.
+
+    For a periodic contact, print its contact area against nominal pressure, from Persson's theory.
+    """
     from restitution.case.case_file import naming, read_case
+    from restitution.cli.area_theory import compare_area
     from restitution.cli.console import answers, command, say, say_next, say_written
     from restitution.laws import theories
+    from restitution.laws.area_theory import area_of_case, area_of_results
     from restitution.laws.law_files import read_law, write_theories
     from restitution.plots.static import write_figure
     from restitution.plots.theories import theory_figure
+    from restitution.results.periodic import PeriodicResults
+    from restitution.results.tables import is_periodic
 
+    if case.is_dir() and is_periodic(case):
+        _refuse(law)
+        compare_area(area_of_results(PeriodicResults(case)), case, out, figures)
+        return
     read, _ = read_case(case)
+    if read.periodic:
+        _refuse(law)
+        with naming(case):
+            areas = area_of_case(read, case.parent)
+        compare_area(areas, case, out, figures)
+        return
     points = None if law is None else read_law(law)
     with naming(case):
-        read.require_impact()
         if points is not None:
             theories.check_same_pair(read, points)
         velocities = theories.velocities_of(read, points)
@@ -83,6 +108,15 @@ def compare_theory(
         say_written(out, [path.name for path in written])
     if law is None:
         say_next(command("compare-theory", case, "--law", "LAW") + " (adds computed points)")
+
+
+def _refuse(law: Path | None) -> None:
+    """Raise `CaseError` if a law is given for a periodic contact."""
+    if law is not None:
+        raise CaseError(
+            "--law: a periodic contact has no restitution law; leave out --law (to compare with "
+            "computed areas, give the results folder of the contact instead of a case file)"
+        )
 
 
 def _tables(velocities: list[float], found: "list[Theory]", width: int) -> Iterator[Table]:

@@ -11,7 +11,7 @@ def report(
         Path,
         typer.Argument(
             metavar="RESULTS",
-            help="Results folder of a run, study, mixture or surface.",
+            help="Results folder of a run, periodic contact, study, mixture or surface.",
             show_default=False,
             readable=False,
         ),

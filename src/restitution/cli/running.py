@@ -107,8 +107,7 @@ def run_with_progress(
         raise
     names = [p.name for p in sorted(out.iterdir()) if p.name not in drawn and p.name != LOCK]
     say_written(out, [*names, *sorted(drawn)])
-    if not read.periodic:
-        say_next(command("report", out))
+    say_next(command("report", out))
     return summary
 
 

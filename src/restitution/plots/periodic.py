@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from restitution.display import quantity
+from restitution.laws.area_theory import AreaTheory
 from restitution.plots.figure import (
     DASHED,
     GREY,
@@ -24,6 +25,7 @@ from restitution.plots.figure import (
 from restitution.theory import Persson
 
 _NOMINAL = Axis("nominal pressure", "MPa", "log")
+_MERGED = 2  # number of stored bins that are drawn as one
 _SHOWN = 4  # number of depths whose distributions of pressure are drawn
 
 
@@ -87,6 +89,20 @@ def area_against_pressure(results: xr.Dataset) -> Figure:
     )
 
 
+def area_theory_figure(areas: AreaTheory) -> Figure:
+    """Plot the area from Persson's theory against nominal pressure, and the computed areas."""
+    p = areas.pressure
+    fine = np.geomspace(p.min(), p.max(), 200) if p.size > 1 else p
+    line = 100 * areas.theory.relative_area(fine)
+    series: list[Series] = [
+        Line(1e-6 * fine, line, "elastic, Persson (2001)", color=GREY, dash=DASHED)
+    ]
+    if (areas.computed >= 0).any():
+        series.insert(0, Points(1e-6 * p, 100 * areas.computed, "this contact", joined=True))
+    axis = Axis("relative contact area", "%", "log")
+    return Figure(areas.title, [Chart(_NOMINAL, axis, series)])
+
+
 def stiffness_against_pressure(results: xr.Dataset) -> Figure:
     """Plot the normal stiffness against nominal pressure, beside a line of proportionality."""
     pressed = _pressed(results)
@@ -104,18 +120,25 @@ def pressure_distribution(results: xr.Dataset) -> Figure:
     carrying = np.flatnonzero(results["pressure_density"].values.any(axis=1))
     shown = carrying[np.unique(np.linspace(0, carrying.size - 1, _SHOWN).round().astype(int))]
     series: list[Series] = []
+    lines: list[Series] = []
     for number, colour in zip(shown, PALETTE, strict=False):
         depth = results.isel(depth=int(number))
-        local, nominal = depth["binned_pressure"].values, float(depth["nominal_pressure"])
-        density = depth["pressure_density"].values
+        local, density = (
+            depth[name].values.reshape(-1, _MERGED).mean(axis=1)
+            for name in ("binned_pressure", "pressure_density")
+        )
+        nominal = float(depth["nominal_pressure"])
         label = f"at {quantity(nominal, 'Pa')}"
-        series.append(Line(1e-9 * local, 1e9 * density, label, label, color=colour, step=True))
+        # A logarithmic axis has no zero.
+        shares = 1e9 * np.where(density > 0, density, np.nan)
+        series.append(Line(1e-9 * local, shares, label, label, color=colour, step=True))
         if theory is not None and nominal > 0:
-            fine: Array = np.linspace(0, float(local.max()), 200)
+            fine: Array = np.linspace(0.1 * local.max(), local.max(), 200)
             line = 1e9 * theory.pressure_density(fine, nominal)
-            series.append(Line(1e-9 * fine, line, "elastic, Persson (2001)", label, colour, DASHED))
+            name = "elastic, Persson (2001)"
+            lines.append(Line(1e-9 * fine, line, name, label, colour, DASHED))
     axes = Axis("contact pressure", "GPa"), Axis("fraction of nominal area", "1/GPa", "log")
-    return Figure(title, [Chart(*axes, series)])
+    return Figure(title, [Chart(*axes, series + lines)])
 
 
 def pressure_map(results: xr.Dataset) -> Figure:

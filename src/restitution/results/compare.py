@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from restitution.case.case_file import parse_toml
 from restitution.errors import OutputError
 from restitution.results.reader import RunResults, StudyResults
+from restitution.results.tables import require_restitution
 
 _Row = Mapping[str, float]
 _SAME = 1e-9  # largest relative difference of two depths that count as equal
@@ -58,6 +59,7 @@ def _kind(folder: Path) -> str:
         return "study"
     if (folder / "curve.csv").is_file():
         return "run"
+    require_restitution(folder)
     raise OutputError(f"{folder}: holds no results of a run or study; give a results folder")
 
 

@@ -24,8 +24,9 @@ def require_restitution(folder: Path) -> None:
     """Raise `OutputError` if `folder` holds a periodic contact, which has no restitution."""
     if is_periodic(folder):
         raise OutputError(
-            f"{folder}: holds the results of a periodic contact, which has no restitution; read "
-            f"{PERIODIC_FILE} and results.nc"
+            f"{folder}: holds the results of a periodic contact, which has no restitution; "
+            "`restitution report` shows them, and `restitution compare-theory` compares the "
+            "contact area with theory"
         )
 
 
