@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Annotated, Any, cast
+from typing import Annotated, Any, Literal, cast
 
 from pydantic import BeforeValidator, model_validator
 
@@ -32,6 +32,7 @@ class Case(Table):
 
     title: str = ""
     total_error: bool = True
+    maps: Literal["deepest", "all"] = "deepest"
     first: BodyTable
     second: BodyTable | None = None
     interface: InterfaceTable = InterfaceTable()
@@ -300,12 +301,12 @@ class Case(Table):
         self.pair()  # refuse two flat bodies before making a surface
         if grid := self.grid.grid():
             fine = divided(grid, self.grid.factor)
-            needs.require(self.run_bytes(fine), fine)
+            self._require_memory(fine)
         return self.contact_on(self.surface(folder))
 
     def contact_on(self, surface: Surface) -> Contact:
         """Make the unloaded contact on the given `surface`. Raises the same errors as `contact`."""
-        needs.require(self.run_bytes(surface.grid), surface.grid)
+        self._require_memory(surface.grid)
         interface = self.interface
         return Contact(
             self.pair(),
@@ -335,12 +336,31 @@ class Case(Table):
         fine = self.periodic or max(grid.spacing) <= coarsest_spacing(self.pair(), w, z0)
         return "cohesive" if fine else "jkr"
 
+    def _require_memory(self, grid: Grid) -> None:
+        """Raise `CaseError` if a run on `grid`, or the maps that it keeps, need too much memory."""
+        maps, needed = self.maps_bytes(grid), self.run_bytes(grid)
+        needs.require(needed - maps, grid)
+        if maps:
+            needs.require_maps(needed, len(self.depths()))
+
+    def maps_bytes(self, grid: Grid) -> float:
+        """Size (bytes) of the maps of all depths, on the finest grid; 0 if only one is stored.
+
+        `grid` is the grid of the deepest depth.
+        """
+        if self.maps == "deepest":
+            return 0.0
+        finest = divided(grid, max(1, max(self.factors()) // self.grid.factor))
+        yields = not math.isinf(self.yielding().hardness)
+        return needs.maps_bytes(finest, len(self.depths()), yields=yields)
+
     def run_bytes(self, grid: Grid) -> float:
         """Memory (bytes) of a run on `grid`."""
         yielding = self.yielding()
         plasticity = "none" if math.isinf(yielding.hardness) else yielding.plasticity
         adhesion = self._adhesion_on(grid) if self.interface.adhesive_energy > 0 else "none"
-        return needs.run_bytes(grid, plasticity=plasticity, adhesion=adhesion)
+        run = needs.run_bytes(grid, plasticity=plasticity, adhesion=adhesion)
+        return run + self.maps_bytes(grid)
 
     @property
     def prescribed(self) -> str:

@@ -23,6 +23,8 @@ _SCAN = 60.0  # per pixel, to read and level a scan and compute its spectrum
 _BAND = 90.0  # per node of the finest grid on which the waves of a twin are adjusted
 _DESCRIBED = 150.0  # `restitution surface`: autocorrelation, spectrum and HTML page
 
+_MAPS = 16.0  # per node and depth: a map of pressure and one of plastic displacement
+
 # Bytes per node for each model of plasticity and for each model of adhesion. A run has one model of
 # each, and needs the larger of the two values. Besides the arrays of the solver, a run with an
 # attraction of finite range ("cohesive") keeps some 100 states of unloading. The pressure and the
@@ -56,6 +58,20 @@ def run_bytes(grid: Grid, *, plasticity: str, adhesion: str) -> float:
     `plasticity` and `adhesion` are names of models. "none" means elastic bodies, or no adhesion.
     """
     return _PROCESS + max(_PLASTICITY[plasticity], _ADHESION[adhesion]) * nodes_of(grid)
+
+
+def maps_bytes(grid: Grid, depths: int, *, yields: bool) -> float:
+    """Size (bytes) of the maps of `depths` depths: pressure and, if bodies yield, displacement."""
+    return (_MAPS if yields else 0.5 * _MAPS) * depths * nodes_of(grid)
+
+
+def require_maps(needed: float, depths: int) -> None:
+    """Raise `CaseError` if a run that keeps maps of `depths` depths needs too much memory."""
+    memory.require(
+        needed,
+        f'maps = "all": the maps of {depths} depths and the run',
+        "leave out maps, or use fewer depths or nodes",
+    )
 
 
 def described_bytes(grid: Grid) -> float:

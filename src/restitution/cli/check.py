@@ -128,6 +128,9 @@ def _table(case: Case, contact: Contact, *, auto: bool) -> Table:
         if key == "deepest_indentation_m" and case.indentation is None:
             label += ", estimated"
         table.add_row(label, "-" if value is None else f"{scale * value:.5g}", unit)
+    if maps := case.maps_bytes(contact.grid):
+        depths = len(case.depths())
+        table.add_row("maps of all depths, at most", in_words(maps), f"for {depths} depths")
     needed = in_words(case.run_bytes(contact.grid))
     table.add_row("memory of a run, at most", needed, f"of {in_words(available())}{more}")
     return table

@@ -12,7 +12,7 @@ import xarray as xr
 from restitution.display import counted, quantity
 from restitution.pages.methods import methods
 from restitution.pages.page import Cell, Drawing, Listing, Page, Table, write_page
-from restitution.pages.run import groups, pressure_percentiles
+from restitution.pages.run import groups, maps_drawing, pressure_percentiles
 from restitution.plots.periodic import (
     area_against_pressure,
     has_distribution,
@@ -40,6 +40,8 @@ def write_periodic_page(out: Path) -> Path:
         parts.append(_distribution(results))
     if results["pressure"].values.any():
         parts.append(_map(results))
+        if stored.has_maps:
+            parts.append(maps_drawing(stored.maps, results))
     parts += [
         _diagnostics(results, summary),
         *groups(summary),

@@ -14,6 +14,7 @@ from restitution.pages.methods import methods
 from restitution.pages.oblique import oblique_drawing
 from restitution.pages.page import Cell, Drawing, Listing, Page, Table, write_page
 from restitution.plots.cor import Abscissa
+from restitution.plots.depth_maps import depth_maps_figure
 from restitution.plots.oblique import has_oblique
 from restitution.plots.run import (
     abscissae,
@@ -38,6 +39,8 @@ def write_run_page(out: Path) -> Path:
         parts.append(_force(results))
         if has_map(results):
             parts.append(_pressure(results))
+        if run.has_maps:
+            parts.append(maps_drawing(run.maps, results))
     parts += [
         _diagnostics(results, summary),
         *groups(summary),
@@ -119,6 +122,26 @@ def _pressure(results: xr.Dataset) -> Drawing:
         f"Map of the contact pressure at the largest indentation, up to {most:.4g} MPa",
         f"At the largest indentation; areas without contact are blank.{yields * lowered}",
         pressure_percentiles(results),
+    )
+
+
+def maps_drawing(maps: xr.Dataset, results: xr.Dataset) -> Drawing:
+    """Draw the maps of several depths; the table has the largest values of all depths."""
+    depth = str(maps["pressure"].dims[0])
+    largest = [maps[name].max(("x", "y")).values for name in ("pressure", "plastic_displacement")]
+    title, down = results.attrs.get("title", ""), results.attrs.get("surface_y_axis") == "down"
+    return Drawing(
+        "Contact pressure at several depths",
+        depth_maps_figure(maps, title, downwards=down),
+        f"Maps of the contact pressure, up to {1e-6 * largest[0].max():.4g} MPa",
+        f"All {maps.sizes[depth]} depths are in maps.nc.",
+        Table(
+            "Largest values of each depth",
+            ["indentation (nm)", "pressure (MPa)", "plastic displacement (nm)"],
+            np.column_stack(
+                [1e9 * maps[depth].values, 1e-6 * largest[0], 1e9 * largest[1]]
+            ).tolist(),
+        ),
     )
 
 

@@ -19,7 +19,7 @@ from restitution.contact.state import Array, State
 from restitution.display import quantity, summary_html, summary_text
 from restitution.results.checksums import check_file
 from restitution.results.coordinates import with_coordinates
-from restitution.results.reader import read_json, read_netcdf
+from restitution.results.reader import read_json, read_maps, read_netcdf
 from restitution.results.schema import PERIODIC_FILE, Column
 from restitution.results.tables import read_cells, read_numbers
 from restitution.results.writer import curve_variables, dataset_with_maps
@@ -93,6 +93,16 @@ class PeriodicResults:
     def dataset(self) -> xr.Dataset:
         """The whole content of `results.nc`, loaded into memory: curve and maps, in SI units."""
         return with_coordinates(read_netcdf(self.folder / "results.nc"))
+
+    @property
+    def has_maps(self) -> bool:
+        """Whether the maps of every depth are stored."""
+        return (self.folder / "maps.nc").is_file()
+
+    @cached_property
+    def maps(self) -> xr.Dataset:
+        """The maps of every depth (`maps.nc`), which a case with maps = "all" stores."""
+        return read_maps(self.folder)
 
     @cached_property
     def rows(self) -> list[dict[str, float]]:

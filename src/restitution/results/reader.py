@@ -157,6 +157,16 @@ class RunResults:
         with _opened(self._netcdf) as stored:
             return stored[[name for name in stored if str(name).startswith("smooth_")]].load()
 
+    @property
+    def has_maps(self) -> bool:
+        """Whether the maps of every depth are stored."""
+        return (self.folder / "maps.nc").is_file()
+
+    @cached_property
+    def maps(self) -> xr.Dataset:
+        """The maps of every depth (`maps.nc`), which a case with maps = "all" stores."""
+        return read_maps(self.folder)
+
     @cached_property
     def case_text(self) -> str:
         """The text of the case file."""
@@ -370,6 +380,17 @@ def read_netcdf(path: Path) -> xr.Dataset:
     """Load a netCDF file into memory. Raises `OutputError`."""
     with _opened(path) as stored:
         return stored.load()
+
+
+def read_maps(folder: Path) -> xr.Dataset:
+    """Load the maps of every depth into memory. Raises `OutputError`."""
+    path = folder / "maps.nc"
+    if (folder / "results.nc").is_file() and not path.is_file():
+        raise OutputError(
+            f'{folder}: holds maps of the deepest depth only; write maps = "all" at the top of the '
+            "case file, and run it again"
+        )
+    return with_coordinates(read_netcdf(path))
 
 
 @contextmanager

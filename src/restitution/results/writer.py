@@ -177,7 +177,8 @@ class ResultsFolder:
                 raise
             write_json(self.path / "summary.json", summary)
             tables = sorted(path.name for path in self.path.glob("*.csv"))
-            write_checksums(self.path, [*tables, "results.nc", "summary.json"])
+            more = ["maps.nc"] if (self.path / "maps.nc").is_file() else []
+            write_checksums(self.path, [*tables, *more, "results.nc", "summary.json"])
 
 
 def make_folder(path: Path, remedy: str = "move it away") -> bool:

@@ -19,7 +19,9 @@ from restitution.errors import NotConvergedError
 from restitution.numerics.convolution.device import current
 from restitution.numerics.kernels import instruction_set
 from restitution.results.interruption import hold_signals
+from restitution.results.maps import DepthMaps, write_maps
 from restitution.results.periodic import (
+    COLUMNS,
     Histogram,
     periodic_dataset,
     periodic_row,
@@ -38,6 +40,7 @@ from restitution.runs.log import RunLog, Say, ignore
 from restitution.runs.messages import input_warnings, message, require_possible
 from restitution.surfaces import describe
 
+_MAPS_ALONG = {"indentation_m": "depth", "nominal_pressure_Pa": "nominal_pressure"}
 CONVENTIONS = {
     "indentation": "approach of the mean planes of the two surfaces since first touch",
     "nominal_pressure": "normal force divided by the area of one period",
@@ -61,11 +64,15 @@ def run_periodic(
     """
     log, deepest = RunLog(progress, warn), list[State]()
     histograms: list[Histogram] = []
+    maps: list[DepthMaps] = []
 
-    with log.record(
-        out,
-        lambda: _write_results((case, text), out, log, deepest[-1], histograms) if deepest else {},
-    ):
+    def keep() -> dict[str, Any]:
+        if not deepest:
+            return {}
+        write_maps(out.path, maps, out.rows, COLUMNS, _MAPS_ALONG)
+        return _write_results((case, text), out, log, deepest[-1], histograms)
+
+    with log.record(out, keep):
         contact = case.contact(folder)
         last = deepest_indentation(case)
         require_possible(contact, last)
@@ -77,6 +84,8 @@ def run_periodic(
             row = periodic_row(state, _stiffness(state))
             with hold_signals():  # an interruption leaves a complete row or no row
                 out.rows.append(row)
+                if case.maps == "all":
+                    maps.append(DepthMaps.of(state))
                 histograms.append(pressure_histogram(state))
                 deepest[:] = [state]
                 write_table(out.path / PERIODIC_FILE, out.rows)

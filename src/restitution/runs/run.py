@@ -28,6 +28,8 @@ from restitution.errors import DomainError, RestitutionError
 from restitution.numerics.convolution.device import current
 from restitution.numerics.kernels import instruction_set
 from restitution.results.interruption import hold_signals
+from restitution.results.maps import DepthMaps, write_maps
+from restitution.results.schema import COLUMNS
 from restitution.results.writer import (
     ResultsFolder,
     case_attributes,
@@ -64,6 +66,11 @@ FULL_PRESSURE = (
 
 # The time of a run grows with the inverse of the cell size to this power.
 _GROWTH = 2.3
+_MAPS_ALONG = {
+    "max_indentation_m": "indentation_max",
+    "impact_velocity_m_per_s": "impact_velocity",
+}
+
 # Limits above which a warning is issued.
 _VELOCITY = 1e-3  # relative error of a prescribed impact velocity
 _IMPRECISE = 0.02  # numerical error of COR
@@ -85,6 +92,7 @@ class _Run(RunLog):
     unloading_checks: list[dict[str, float]] = field(default_factory=list)
     last_unloading: Sequence[State] = ()
     sticking: Sticking | None = None
+    maps: list[DepthMaps] = field(default_factory=list)
 
 
 def run_case(
@@ -168,6 +176,7 @@ def _write_results(
     with suppress(RestitutionError):  # if the smooth curve fails, the results omit it
         dataset = dataset.assign(smooth_curve(deepest.contact, out.rows))
     dataset.attrs = status_attributes(summary) | case_attributes(summary, text)
+    write_maps(out.path, run.maps[: len(out.rows)], out.rows, COLUMNS, _MAPS_ALONG)
     out.write(dataset, summary)
     return summary
 
@@ -213,6 +222,8 @@ def _keep(
         run.spacings.append(max(state.contact.grid.spacing))
         run.adhesive_spacings.append(adhesive_spacing(state))
         run.loading_work_errors.append(state.work_error / max(abs(state.loading_work), 1e-300))
+        if case.maps == "all":
+            run.maps.append(DepthMaps.of(state))
         out.add(state, collision, depth.refine, depth.touch)
         run.deepest = state
     if unload and state.contact_nodes:

@@ -71,7 +71,7 @@ class Persson(PositiveFields):
             pressure: Nominal pressure p₀ (Pa).
 
         Returns:
-            Density (1/Pa).
+            Density (1/Pa, SI).
         """
         p, p_0 = np.asarray(local, dtype=float), np.asarray(touching(pressure), dtype=float)
         s = 0.5 * np.asarray(self.contact_modulus) * np.asarray(self.rms_slope)
