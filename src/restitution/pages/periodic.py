@@ -23,6 +23,7 @@ from restitution.plots.periodic import (
     stiffness_against_pressure,
 )
 from restitution.results.periodic import PeriodicResults
+from restitution.results.tables import has_maps
 
 _PERCENTILES = (10, 50, 90, 99)
 
@@ -40,7 +41,7 @@ def write_periodic_page(out: Path) -> Path:
         parts.append(_distribution(results))
     if results["pressure"].values.any():
         parts.append(_map(results))
-        if stored.has_maps:
+        if has_maps(out):
             parts.append(maps_drawing(stored.maps, results))
     parts += [
         _diagnostics(results, summary),

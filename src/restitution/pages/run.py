@@ -25,6 +25,7 @@ from restitution.plots.run import (
     unloading_lines,
 )
 from restitution.results.reader import EnsembleResults, RunResults, read_run
+from restitution.results.tables import has_maps
 
 
 def write_run_page(out: Path) -> Path:
@@ -39,7 +40,7 @@ def write_run_page(out: Path) -> Path:
         parts.append(_force(results))
         if has_map(results):
             parts.append(_pressure(results))
-        if run.has_maps:
+        if has_maps(out):
             parts.append(maps_drawing(run.maps, results))
     parts += [
         _diagnostics(results, summary),

@@ -94,11 +94,6 @@ class PeriodicResults:
         """The whole content of `results.nc`, loaded into memory: curve and maps, in SI units."""
         return with_coordinates(read_netcdf(self.folder / "results.nc"))
 
-    @property
-    def has_maps(self) -> bool:
-        """Whether the maps of every depth are stored."""
-        return (self.folder / "maps.nc").is_file()
-
     @cached_property
     def maps(self) -> xr.Dataset:
         """The maps of every depth (`maps.nc`), which a case with maps = "all" stores."""

@@ -157,11 +157,6 @@ class RunResults:
         with _opened(self._netcdf) as stored:
             return stored[[name for name in stored if str(name).startswith("smooth_")]].load()
 
-    @property
-    def has_maps(self) -> bool:
-        """Whether the maps of every depth are stored."""
-        return (self.folder / "maps.nc").is_file()
-
     @cached_property
     def maps(self) -> xr.Dataset:
         """The maps of every depth (`maps.nc`), which a case with maps = "all" stores."""

@@ -20,6 +20,11 @@ def is_periodic(folder: Path) -> bool:
     return (folder / PERIODIC_FILE).is_file()
 
 
+def has_maps(folder: Path) -> bool:
+    """Whether `folder` holds the maps of every depth."""
+    return (folder / "maps.nc").is_file()
+
+
 def require_restitution(folder: Path) -> None:
     """Raise `OutputError` if `folder` holds a periodic contact, which has no restitution."""
     if is_periodic(folder):
