@@ -30,6 +30,7 @@ restitution_error = 0.05
 """
 NEW = [
     "pull_off_force_N",
+    "pull_off_error_N",
     "separation_indentation_m",
     "restitution_error",
     "sticks",

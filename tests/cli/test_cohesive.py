@@ -87,7 +87,11 @@ def test_refine_auto_finds_the_spacing(run):
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ('"0.08 um"', '"0.25 um"', ("grid.spacing: 250 nm", "needs 82.16 nm", "refine")),
+        (
+            '"0.08 um"',
+            '"0.25 um"',
+            ("cells of 250 nm", "82.16 nm", "multiply grid.refine by 4"),
+        ),
         (GIVEN, GIVEN + 'detachment = "pohrt-popov"\n', ("detachment", "cohesive")),
         (GIVEN, GIVEN + 'approach = "hertzian"\n', ("approach", "cohesive")),
         (GIVEN, GIVEN + 'approach = "pull-increments"\n', ("approach", "cohesive")),

@@ -10,20 +10,21 @@ from restitution.contact.bodies import Body, Pair
 from restitution.contact.checks import resolution
 from restitution.contact.checks.finding import Finding
 from restitution.contact.checks.resolution import (
-    ADHESIVE_NODES,
     NODES_PER_PATCH,
     adhesive_nodes,
+    adhesive_spacing,
     coarse_scan,
+    divisions,
     expected_pull_off_error,
     grid_of_a_scan,
     median_patch,
     predicted_radius,
     resolution_findings,
     resolves,
+    resolves_adhesion,
     unresolved_adhesion,
     unresolved_patches,
 )
-from restitution.contact.cohesive import resolves_range
 from restitution.contact.contact import Contact, smooth
 from restitution.contact.loading import solve
 from restitution.numerics.grid import Grid
@@ -136,7 +137,7 @@ def test_the_median_patch_holds_the_median_node(patches, median):
 def test_what_is_resolved_is_not_found():
     assert unresolved_patches([1e-9, 2e-9], [NODES_PER_PATCH, 500]) == []
     assert unresolved_patches([], []) == []
-    assert unresolved_adhesion([1e-9, 2e-9], [ADHESIVE_NODES, math.inf]) == []
+    assert unresolved_adhesion([1e-9, 2e-9], [2e-9, 1e-9], [2e-9, math.inf], 2e-9) == []
 
 
 def test_unresolved_depths_are_counted_up_to_the_deepest():
@@ -145,14 +146,34 @@ def test_unresolved_depths_are_counted_up_to_the_deepest():
     # rough contacts can lose resolution with depth: the deepest unresolved depth is reported
     (found,) = unresolved_patches([7e-9, 3e-9], [1, 1])
     assert found["deepest"] == 7e-9
-    (found,) = unresolved_adhesion([1e-9, 2e-9, 3e-9], [2.0, 1.5, 9.0])
-    assert found == Finding("adhesion-unresolved", {"few": 2, "depths": 3, "nodes": 1.5})
+    (found,) = unresolved_adhesion([1e-9, 2e-9, 3e-9], [4e-9, 4e-9, 8e-9], [5e-9, 3e-9, 7e-9], 8e-9)
+    assert found == Finding(
+        "adhesion-unresolved",
+        {
+            "few": 2,
+            "depths": 3,
+            "from": 2e-9,
+            "to": 3e-9,
+            "spacing": 4e-9,
+            "needed": 3e-9,
+            "refine": 4,
+        },
+    )
 
 
-@pytest.mark.parametrize("check", [unresolved_patches, unresolved_adhesion])
-def test_depths_and_nodes_come_in_pairs(check):
+@pytest.mark.parametrize(
+    ("spacing", "needed", "times"),
+    [(8e-9, 8e-9, 1), (8e-9, 9e-9, 1), (8e-9, 7.9e-9, 2), (8e-9, 4e-9, 2), (8e-9, 1.9e-9, 8)],
+)
+def test_cells_are_divided_by_a_power_of_two(spacing, needed, times):
+    assert divisions(spacing, needed) == times
+
+
+def test_depths_and_nodes_come_in_pairs():
     with pytest.raises(ValueError, match="zip"):
-        check([1e-9], [1, 2])
+        unresolved_patches([1e-9], [1, 2])
+    with pytest.raises(ValueError, match="zip"):
+        unresolved_adhesion([1e-9], [1e-9], [1e-9, 2e-9], 1e-9)
 
 
 def test_a_smooth_surface_has_no_pixel(pair):
@@ -225,20 +246,21 @@ def test_the_error_of_pull_off_is_a_share_of_a_node(pair, detachment, share):
         assert expected_pull_off_error(coarse) == approx(expected, rel=1e-9)
 
 
-@pytest.mark.parametrize(("share", "nodes"), [(0.99, math.inf), (1.01, 0.0)])
-def test_the_range_of_the_attraction_is_also_to_be_resolved_on_asperities(
-    pair, share, nodes, monkeypatch
-):
-    """The spacing is at most 0.3 sqrt(r z0) for asperities of radius r, here 1 um."""
-    z0, radius = 0.3e-9, 1e-6
+@pytest.mark.parametrize("radius", [1e-6, 1e-3])
+def test_the_range_of_the_attraction_is_to_be_resolved_on_asperities(pair, radius, monkeypatch):
+    """Cells of half sqrt(r z0) at asperities of radius r, and never more than for smooth bodies."""
+    z0 = 0.3e-9
     monkeypatch.setattr(resolution, "radius_of_asperities", lambda _: radius)
-    grid = Grid(8, share * 0.3 * math.sqrt(radius * z0))
-    contact = Contact(
-        pair,
-        smooth(grid),
-        adhesion="cohesive",
-        work_of_adhesion=0.1 * pair.contact_modulus * z0**2 / grid.spacing[0],
-        equilibrium_separation=z0,
-    )
-    assert resolves_range(contact)
-    assert adhesive_nodes(SimpleNamespace(contact=contact)) == nodes
+    largest = min(0.5 * math.sqrt(radius * z0), 0.3 * math.sqrt(pair.radius * z0))
+    for share in (0.99, 1.01):
+        grid = Grid(8, share * largest)
+        contact = Contact(
+            pair,
+            smooth(grid),
+            adhesion="cohesive",
+            work_of_adhesion=0.1 * pair.contact_modulus * z0**2 / grid.spacing[0],
+            equilibrium_separation=z0,
+        )
+        state = SimpleNamespace(contact=contact)
+        assert adhesive_spacing(state) == approx(largest, rel=1e-6)
+        assert resolves_adhesion(state) is (share < 1)

@@ -42,10 +42,10 @@ def test_a_file_is_replaced_whole_or_not_at_all(tmp_path):
 @pytest.mark.parametrize(("off", "warned"), [(0.009, False), (0.011, True), (-0.02, True)])
 def test_unloading_that_returns_another_work_is_warned_of(off, warned):
     """The work differs by more than 1 % of the stored energy, up or down."""
-    from restitution.runs.run import _unbalanced
+    from restitution.runs.result_warnings import unbalanced
 
     check = {"relative_to_stored_energy": off, "max_indentation_m": 1e-7}
-    lines = list(_unbalanced([check]))
+    lines = list(unbalanced([check]))
     assert len(lines) == warned
     assert all(f"{off:+.1%}" in line for line in lines)
 

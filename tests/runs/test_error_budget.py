@@ -127,7 +127,7 @@ def test_waves_beyond_the_grid_count_by_the_slope_they_have():
 
 def test_an_elastic_contact_counts_what_a_lower_yield_pressure_would_change():
     def impact(restitution):
-        return Curve(np.array([1e-9]), np.array([1e-9 * restitution**2]))
+        return Curve(np.array([1e-9]), np.array([1e-9 * restitution**2]), np.zeros(1))
 
     class Falling:
         """COR falls by 0.1 with the yield pressure, at any work."""
@@ -243,16 +243,16 @@ def test_the_surface_error_covers_the_mean_of_all_surfaces(surfaces):
 def test_a_curve_is_not_extrapolated():
     work = np.array([1.0, 10.0, 100.0])
     for first in (0.9, 1.0):  # an impact without loss changes the interpolation
-        curve = Curve(work, work * np.array([first, 0.7, 0.6]) ** 2)
+        curve = Curve(work, work * np.array([first, 0.7, 0.6]) ** 2, NONE[:3])
         found = curve.at(np.array([0.1, 1.0, 10.0, 1e4]))
         assert found == approx([first, first, 0.7, 0.6], rel=1e-12)
-    assert np.isnan(Curve(np.array([]), np.array([])).at(np.array([1.0]))).all()
+    assert np.isnan(Curve(*np.empty((3, 0))).at(np.array([1.0]))).all()
 
 
 def test_between_impacts_that_stick_and_that_do_not_a_constant_loss_is_interpolated():
     """COR is 0 up to a work of 2 J, the energy that adhesion dissipates, and then rises steeply."""
     work = np.array([1.0, 10.0, 100.0])
-    curve = Curve(work, work - 2.0)
+    curve = Curve(work, work - 2.0, NONE[: work.size])
     between = np.array([1.9, 2.1, 4.0, 50.0])
     assert curve.at(between)[0] == 0
     assert curve.at(between)[1:] == approx(np.sqrt(1 - 2 / between[1:]), rel=1e-9)

@@ -177,11 +177,11 @@ def test_depths_that_are_not_resolved():
     (found,) = unresolved_patches([1e-9, 5e-9, 20e-9, 40e-9], [1, NODES_PER_PATCH - 1, 3, 90])
     assert message(found).startswith("3 of 4 depths (up to 20 nm) are not resolved (resolved is")
     assert f"fewer than {NODES_PER_PATCH} nodes" in message(found)
-    (found,) = unresolved_adhesion([1e-9, 2e-9, 3e-9], [2.0, 1.5, 9.0])
-    assert message(found).startswith("adhesion is not resolved at 2 of 3 depths (adhesion_resolved")
-    assert "below 4 nodes, at worst 1.5; use a finer grid" in message(found)
-    (found,) = unresolved_adhesion([1e-9, 2e-9], [0.0, math.inf])
-    assert "too coarse for the range of the attraction" in message(found)
+    (found,) = unresolved_adhesion([1e-9, 2e-9, 3e-9], [4e-9, 4e-9, 8e-9], [5e-9, 3e-9, 7e-9], 8e-9)
+    assert message(found).startswith("adhesion is not resolved at 2 of 3 depths (2 nm to 3 nm;")
+    assert message(found).endswith("needs 3 nm or less; set grid.refine = 4")
+    (found,) = unresolved_adhesion([1e-9], [4e-9], [0.01e-9], 8e-9)
+    assert "roughness.shortest" in message(found)
 
 
 def test_a_notice_of_the_surface_is_repeated():

@@ -23,10 +23,10 @@ from restitution.errors import CaseError, OutputError, first_problem
 from restitution.results.checksums import check_file
 from restitution.results.coordinates import with_coordinates
 from restitution.results.interruption import hold_signals
+from restitution.results.older import REQUIRED, as_now, dataset_as_now
 from restitution.results.schema import (
     ALL_COLUMNS,
     COLUMNS,
-    LATER,
     OBLIQUE_COLUMNS,
     OBLIQUE_FILE,
     OBLIQUE_SPREAD_COLUMNS,
@@ -122,7 +122,7 @@ class RunResults:
     @cached_property
     def curve(self) -> Curve:
         """The rows of `curve.csv`."""
-        return _read_table(self.folder / "curve.csv", COLUMNS.keys() - LATER, ALL_COLUMNS)
+        return _read_table(self.folder / "curve.csv", REQUIRED, ALL_COLUMNS)
 
     @cached_property
     def summary(self) -> dict[str, Any]:
@@ -138,10 +138,7 @@ class RunResults:
     @cached_property
     def dataset(self) -> xr.Dataset:
         """The whole content of `results.nc`, loaded into memory."""
-        results = read_netcdf(self._netcdf)
-        for key in LATER & {key for key in COLUMNS if COLUMNS[key].variable not in results}:
-            empty = np.full(results.sizes.get("indentation_max", 0), np.nan)
-            results[COLUMNS[key].variable] = COLUMNS[key].labelled("indentation_max", empty)
+        results = dataset_as_now(read_netcdf(self._netcdf))
         for name, column in ((column.variable, column) for column in COLUMNS.values()):
             if name not in results or results[name].dims != ("indentation_max",):
                 raise damaged(self._netcdf, f"{name} is missing")
@@ -284,9 +281,7 @@ class StudyResults:
         """The cases in `table.csv`."""
         path = self.folder / "table.csv"
         found: dict[str, StoredCase] = {}
-        for line, cells in enumerate(
-            read_cells(path, (*(COLUMNS.keys() - LATER), "case", "status", "reason")), 2
-        ):
+        for line, cells in enumerate(read_cells(path, (*REQUIRED, "case", "status", "reason")), 2):
             swept = dict(list(cells.items())[: list(cells).index("max_indentation_m")])
             status = cells["status"]
             if status not in STATUS:
@@ -300,7 +295,7 @@ class StudyResults:
                     path, f"line {line}: the rows of {name} differ in status or swept values"
                 )
             if status == "complete":
-                case.curve.rows.append(read_numbers(path, line, cells))
+                case.curve.rows.append(as_now(read_numbers(path, line, cells)))
                 case.curve.cells.append(cells)
         check_file(path)
         if not found:
@@ -349,7 +344,7 @@ def _read_table(path: Path, required: Iterable[str], columns: Mapping[str, Colum
     The cells of `columns` are converted to numbers.
     """
     cells = read_cells(path, required)
-    rows = [read_numbers(path, line, row, columns) for line, row in enumerate(cells, 2)]
+    rows = [as_now(read_numbers(path, line, row, columns)) for line, row in enumerate(cells, 2)]
     check_file(path)
     return Curve(rows, cells)
 

@@ -136,8 +136,6 @@ SPREAD_COLUMNS = {
     ),
 }
 ALL_COLUMNS = COLUMNS | SPREAD_COLUMNS
-# Columns that results of older versions lack; they are read as empty.
-LATER = {"pull_off_error_N"}
 PERIODIC_FILE = "periodic.csv"  # the curve of a periodic contact, instead of curve.csv
 OBLIQUE_FILE = "oblique.csv"
 # Columns of the table of oblique impacts. The tangential restitution and the angle of rebound refer

@@ -12,7 +12,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from restitution.errors import OutputError, one_line
-from restitution.results.schema import ALL_COLUMNS, LATER, PERIODIC_FILE, Column
+from restitution.results.schema import ALL_COLUMNS, PERIODIC_FILE, Column
 
 
 def is_periodic(folder: Path) -> bool:
@@ -82,16 +82,11 @@ def read_numbers(
 
     Raises `OutputError` if a cell holds a value that no run writes.
     """
-    row = {
+    return {
         name: _number(path, f"line {line}: {name}", column, cells[name])
         for name, column in columns.items()
         if name in cells
     }
-    if columns.keys() >= LATER:
-        row = dict.fromkeys(LATER, math.nan) | row
-    if "adhesion_resolved" in row:  # older versions left it out of `resolved`
-        row["resolved"] = min(row["resolved"], row["adhesion_resolved"])
-    return row
 
 
 def _number(path: Path, where: str, column: Column, text: str) -> float:

@@ -16,14 +16,12 @@ from restitution.case.omissions import omissions
 from restitution.collision import Collision, collide
 from restitution.contact.checks.resolution import (
     adhesive_spacing,
-    unresolved_adhesion,
     unresolved_patches,
 )
 from restitution.contact.cohesive import CohesiveState
 from restitution.contact.contact import FULL_CONSTRAINT, Contact
 from restitution.contact.state import State
 from restitution.contact.unloading_curve import unloading_curve
-from restitution.display import duration
 from restitution.errors import DomainError, RestitutionError
 from restitution.numerics.convolution.device import current
 from restitution.numerics.kernels import instruction_set
@@ -50,6 +48,12 @@ from restitution.runs.log import RunLog, Say, ignore
 from restitution.runs.messages import input_warnings, message, require_possible
 from restitution.runs.oblique import is_oblique, oblique_rows
 from restitution.runs.refinement import settled, with_chosen_adhesion
+from restitution.runs.result_warnings import (
+    imprecise,
+    too_coarse_for_adhesion,
+    unbalanced,
+    velocities_missed,
+)
 from restitution.runs.smooth import smooth_curve
 from restitution.surfaces import describe
 
@@ -64,17 +68,10 @@ FULL_PRESSURE = (
     "begin to yield at about 1.6 times the yield strength"
 )
 
-# The time of a run grows with the inverse of the cell size to this power.
-_GROWTH = 2.3
 _MAPS_ALONG = {
     "max_indentation_m": "indentation_max",
     "impact_velocity_m_per_s": "impact_velocity",
 }
-
-# Limits above which a warning is issued.
-_VELOCITY = 1e-3  # relative error of a prescribed impact velocity
-_IMPRECISE = 0.02  # numerical error of COR
-_BALANCE = 0.01  # relative difference of unloading work and stored energy
 
 
 @dataclass
@@ -316,63 +313,16 @@ def _result_warnings(case: Case, contact: Contact, out: ResultsFolder, run: _Run
     depths = [row["max_indentation_m"] for row in out.rows]
     patches = [row["median_patch_nodes"] for row in out.rows]
     yield from map(message, unresolved_patches(depths, patches))
-    yield from _unresolved_adhesion(case, contact, out, run)
+    yield from too_coarse_for_adhesion(
+        case, contact, out.rows, run.spacings, run.adhesive_spacings, run.seconds
+    )
     yield from band_warning(contact.surface, run.band_errors)
     if run.errors:
         yield from interrupted_errors(case, out.rows, run.status)
-    yield from _imprecise(out, case)
-    yield from _velocities_missed(out, case, run.asked)
+    yield from imprecise(out.rows, case)
+    yield from velocities_missed(out.rows, case, run.asked)
     if not contact.adhesive:
-        yield from _unbalanced(run.unloading_checks)
-
-
-def _unresolved_adhesion(
-    case: Case, contact: Contact, out: ResultsFolder, run: _Run
-) -> Iterator[str]:
-    """Yield a warning if cells are too large for adhesion, with the finer grid and its cost."""
-    rows = out.rows
-    spacings, needed = (part[: len(rows)] for part in (run.spacings, run.adhesive_spacings))
-    depths = [row["max_indentation_m"] for row in rows]
-    factor = case.grid.factor
-    for found in unresolved_adhesion(depths, spacings, needed, factor * max(contact.grid.spacing)):
-        nx, ny = (n * found["refine"] // factor for n in contact.grid.nodes)
-        finer = max(1.0, found["spacing"] / found["needed"])
-        cost = duration(run.seconds * finer**_GROWTH)
-        yield f"{message(found)} ({nx} x {ny} nodes, about {cost})"
-
-
-def _imprecise(out: ResultsFolder, case: Case) -> Iterator[str]:
-    """Yield a warning if the COR of some depths is less precise than requested."""
-    asked = max(_IMPRECISE, case.unloading.restitution_error)
-    missed = [row for row in out.rows if row["restitution_error"] > asked]
-    if missed:
-        worst = max(missed, key=lambda row: row["restitution_error"])
-        why = (
-            'unloading is an estimate; set unloading.method = "path"'
-            if case.unloading.method == "energy-estimate"
-            else "contact forms and breaks in jumps at these depths; use a finer grid"
-        )
-        yield (
-            f"restitution_error is above {asked:g} at {len(missed)} of {len(out.rows)} depths, "
-            f"at worst {worst['restitution_error']:.2g} at {1e9 * worst['max_indentation_m']:.4g} "
-            f"nm: {why}"
-        )
-
-
-def _velocities_missed(out: ResultsFolder, case: Case, computed: list[float]) -> Iterator[str]:
-    """Yield a warning if impact velocities differ from the prescribed values."""
-    if case.impact is None:
-        return
-    pairs = zip((row["impact_velocity_m_per_s"] for row in out.rows), computed, strict=False)
-    off = {asked: abs(met / asked - 1) for met, asked in pairs}
-    missed = [asked for asked, miss in off.items() if not miss <= _VELOCITY]
-    if missed:
-        worst = max(missed, key=lambda asked: off[asked])
-        yield (
-            f"{len(missed)} of {len(off)} impact velocities differ from the requested values "
-            f"because of the error of the loading work, at worst by {off[worst]:.1%} at {worst:g} "
-            "m/s: use the velocities in curve.csv"
-        )
+        yield from unbalanced(run.unloading_checks)
 
 
 def _adhesion_of(contact: Contact, case: Case) -> dict[str, Any]:
@@ -390,15 +340,3 @@ def _adhesion_of(contact: Contact, case: Case) -> dict[str, Any]:
         "detachment": contact.detachment,
         "unloading": case.unloading.method,
     }
-
-
-def _unbalanced(checks: list[dict[str, float]]) -> Iterator[str]:
-    """Yield a warning if unloading without adhesion does not return the stored energy."""
-    off = [check for check in checks if not abs(check["relative_to_stored_energy"]) <= _BALANCE]
-    if off:
-        worst = max(off, key=lambda check: abs(check["relative_to_stored_energy"]))
-        yield (
-            f"the work of {len(off)} of {len(checks)} unloading curves differs from the stored "
-            f"energy, at worst by {worst['relative_to_stored_energy']:+.1%} at "
-            f"{1e9 * worst['max_indentation_m']:.4g} nm: raise unloading.steps, or refine the grid"
-        )

@@ -1,0 +1,86 @@
+"""Warnings about the results of a run: precision, velocities, energy balance, adhesion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from restitution.case.case import Case
+from restitution.contact.checks.resolution import unresolved_adhesion
+from restitution.contact.contact import Contact
+from restitution.display import duration
+from restitution.runs.messages import message
+
+Row = dict[str, float]
+
+# The time of a run grows with the inverse of the cell size to this power.
+_GROWTH = 2.3
+# Limits above which a warning is issued.
+_VELOCITY = 1e-3  # relative error of a prescribed impact velocity
+_IMPRECISE = 0.02  # numerical error of COR
+_BALANCE = 0.01  # relative difference of unloading work and stored energy
+
+
+def too_coarse_for_adhesion(
+    case: Case,
+    contact: Contact,
+    rows: Sequence[Row],
+    spacings: Sequence[float],
+    needed: Sequence[float],
+    seconds: float,
+) -> Iterator[str]:
+    """Yield a warning if cells are too large for adhesion, with the finer grid and its cost."""
+    # If the last row could not be written, the lists have one value more than `rows`.
+    spacings, needed = spacings[: len(rows)], needed[: len(rows)]
+    depths = [row["max_indentation_m"] for row in rows]
+    factor = case.grid.factor
+    for found in unresolved_adhesion(depths, spacings, needed, factor * max(contact.grid.spacing)):
+        nx, ny = (n * found["refine"] // factor for n in contact.grid.nodes)
+        finer = max(1.0, found["spacing"] / found["needed"])
+        cost = duration(seconds * finer**_GROWTH)
+        yield f"{message(found)} ({nx} x {ny} nodes, about {cost})"
+
+
+def imprecise(rows: Sequence[Row], case: Case) -> Iterator[str]:
+    """Yield a warning if the COR of some depths is less precise than requested."""
+    asked = max(_IMPRECISE, case.unloading.restitution_error)
+    missed = [row for row in rows if row["restitution_error"] > asked]
+    if missed:
+        worst = max(missed, key=lambda row: row["restitution_error"])
+        why = (
+            'unloading is an estimate; set unloading.method = "path"'
+            if case.unloading.method == "energy-estimate"
+            else "contact forms and breaks in jumps at these depths; use a finer grid"
+        )
+        yield (
+            f"restitution_error is above {asked:g} at {len(missed)} of {len(rows)} depths, "
+            f"at worst {worst['restitution_error']:.2g} at {1e9 * worst['max_indentation_m']:.4g} "
+            f"nm: {why}"
+        )
+
+
+def velocities_missed(rows: Sequence[Row], case: Case, computed: Sequence[float]) -> Iterator[str]:
+    """Yield a warning if impact velocities differ from the prescribed values."""
+    if case.impact is None:
+        return
+    pairs = zip((row["impact_velocity_m_per_s"] for row in rows), computed, strict=False)
+    off = {asked: abs(met / asked - 1) for met, asked in pairs}
+    missed = [asked for asked, miss in off.items() if not miss <= _VELOCITY]
+    if missed:
+        worst = max(missed, key=lambda asked: off[asked])
+        yield (
+            f"{len(missed)} of {len(off)} impact velocities differ from the requested values "
+            f"because of the error of the loading work, at worst by {off[worst]:.1%} at {worst:g} "
+            "m/s: use the velocities in curve.csv"
+        )
+
+
+def unbalanced(checks: list[dict[str, float]]) -> Iterator[str]:
+    """Yield a warning if unloading without adhesion does not return the stored energy."""
+    off = [check for check in checks if not abs(check["relative_to_stored_energy"]) <= _BALANCE]
+    if off:
+        worst = max(off, key=lambda check: abs(check["relative_to_stored_energy"]))
+        yield (
+            f"the work of {len(off)} of {len(checks)} unloading curves differs from the stored "
+            f"energy, at worst by {worst['relative_to_stored_energy']:+.1%} at "
+            f"{1e9 * worst['max_indentation_m']:.4g} nm: raise unloading.steps, or refine the grid"
+        )
