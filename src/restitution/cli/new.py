@@ -19,6 +19,23 @@ def new(
     study: Annotated[
         bool, typer.Option("--study", help="Write a study, which is a case with a table \\[sweep].")
     ] = False,
+    powder: Annotated[
+        bool,
+        typer.Option(
+            "--powder",
+            help="Write a case for a fine adhesive powder, on a grid that resolves its adhesion.",
+        ),
+    ] = False,
+    values: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="KEY=VALUE",
+            help="With --powder: material, radius, rms, correlation_length or work_of_adhesion, "
+            'for example radius="2 um"; may be repeated.',
+            show_default=False,
+        ),
+    ] = None,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -38,7 +55,7 @@ def new(
     from restitution.errors import CaseError
     from restitution.results.writer import require_new_file, writing
 
-    kinds = {"dem": dem, "scan": scan, "study": study}
+    kinds = {"dem": dem, "scan": scan, "study": study, "powder": powder}
     chosen = [kind for kind, wanted in kinds.items() if wanted]
     if len(chosen) > 1:
         raise CaseError(f"--{', --'.join(chosen)}: choose one of them")
@@ -46,7 +63,43 @@ def new(
     file = out or Path("study.toml" if study else "case.toml")
     require_new_file(file)
     text = (files("restitution.cli") / "templates" / f"{kind}.toml").read_text("utf-8")
+    if values and not powder:
+        raise CaseError("--set: belongs to --powder; edit the written file instead")
+    if powder:
+        text = _powder(text, values or [])
     with writing(file.parent):
         file.write_text(text, encoding="utf-8")
     say_written(file)
     say_next(command("check", file))
+
+
+# The values of a powder that `--set` replaces.
+_POWDER = {
+    "material": "silica",
+    "radius": "5 um",
+    "rms": "10 nm",
+    "correlation_length": "0.3 um",
+    "work_of_adhesion": "0.05 J/m^2",
+}
+
+
+def _powder(template: str, given: list[str]) -> str:
+    """Fill in the template of a powder."""
+    from string import Template
+
+    from restitution.cli.console import errors
+    from restitution.errors import CaseError
+    from restitution.runs.powder import powder_grid
+
+    values = dict(_POWDER)
+    for item in given:
+        key, equals, value = (part.strip() for part in item.partition("="))
+        if key not in values or not equals or not value:
+            raise CaseError(
+                f'--set: "{item}" should be KEY=VALUE with one of {", ".join(_POWDER)}, for '
+                'example radius="2 um"'
+            )
+        values[key] = value
+    values["title"] = f"{values['material']}, {values['radius']}, Rq {values['rms']}"
+    with errors.status("choosing a grid that resolves the adhesion"):
+        return Template(template).substitute(values, **powder_grid(template, values))

@@ -12,7 +12,7 @@ from restitution.contact.contact import Contact
 from restitution.contact.state import State
 from restitution.errors import DomainError
 
-_MARGIN = 1.2  # width of the recommended grid divided by the largest width of the contact
+MARGIN = 1.2  # width of the recommended grid divided by the largest width of the contact
 
 # First touch counts as off-centre if its distance from the centre exceeds this fraction of the
 # width of the grid.
@@ -93,8 +93,8 @@ def first_touch(contact: Contact) -> tuple[float, float]:
     return float(contact.grid.x[i]), float(contact.grid.y[j])
 
 
-def needed_edges(contact: Contact, indentation: float) -> tuple[float, float]:
-    """Edge lengths (m) of a grid that contains the contact; at least those of the present grid.
+def largest_reach(contact: Contact, indentation: float) -> float:
+    """Distance (m) from the centre within which all contact at `indentation` (m) lies.
 
     Contact is possible only where the initial gap h₀ is smaller than the indentation δ. At the
     distance r from the centre, h₀ = r²/(2R*) − z − c with the height z ≤ z_max. The constant c
@@ -104,9 +104,13 @@ def needed_edges(contact: Contact, indentation: float) -> tuple[float, float]:
     R, x, y = contact.pair.radius, contact.grid.x[:, None], contact.grid.y[None, :]
     height = contact.surface.height
     shift = float(((x * x + y * y) / (2 * R) - height).min())
-    reach = math.sqrt(2 * R * (indentation + float(height.max()) + shift))
+    return math.sqrt(2 * R * (indentation + float(height.max()) + shift))
+
+
+def needed_edges(contact: Contact, indentation: float) -> tuple[float, float]:
+    """Edge lengths (m) of a grid that contains the contact; at least those of the present grid."""
     wide, long = contact.grid.size
     # The contact reaches the edge of the grid or is expected to reach it. So a larger grid is
-    # recommended even if the present grid is already wider than the largest contact, 2 * reach.
-    needed = max(2 * reach, min(wide, long)) * _MARGIN
+    # recommended even if the present grid is already wider than the largest contact.
+    needed = max(2 * largest_reach(contact, indentation), min(wide, long)) * MARGIN
     return max(wide, needed), max(long, needed)
