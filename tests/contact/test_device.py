@@ -154,6 +154,22 @@ def test_a_solve_is_the_same_on_any_device(rough_contact, limit):
     assert type(there.box_pressure) is np.ndarray
 
 
+@pytest.mark.parametrize(
+    "yielding",
+    [{"yield_pressure": 2e9, "plasticity": "truncated"}, {"yield_strength": 0.8e9}],
+    ids=["truncated", "expanding-cavity"],
+)
+def test_each_model_of_plasticity_is_the_same_on_any_device(rough_contact, yielding):
+    plain = rough_contact()
+    contact = Contact(plain.pair, plain.surface, **yielding)
+    here = solve(contact, DEPTH)
+    with on_device(STAND_IN):
+        there = solve(contact, DEPTH)
+    assert there.plastic_work > 0
+    assert there.force == approx(here.force, rel=1e-6)
+    assert there.loading_work == approx(here.loading_work, rel=1e-4)
+
+
 @pytest.mark.parametrize("limit", [np.inf, 9e9])
 def test_a_periodic_contact_is_the_same_on_any_device(limit):
     """The first grid is coarsened; the compiled transforms cannot take the second."""

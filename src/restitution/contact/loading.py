@@ -37,6 +37,7 @@ from restitution.contact.plastic_work import plastic_work
 from restitution.contact.state import Array, State
 from restitution.errors import CaseError
 from restitution.numerics.box import bounding_box, shape_of
+from restitution.numerics.convolution.device import current
 from restitution.numerics.quadrature import integrate_adaptively
 from restitution.numerics.read_only import freeze
 
@@ -220,7 +221,8 @@ def truncate_pressure(elastic: State) -> State:
     contact, indentation, box = elastic.contact, elastic.indentation, elastic.box
     pressure = np.minimum(elastic.box_pressure, contact.yield_pressure)
     K = half_space(shape_of(box), contact.grid.spacing, contact.pair.contact_modulus)
-    displacement = K(pressure)
+    device = current()
+    displacement = device.get(K(device.put(pressure)))
     plastic = np.zeros(contact.grid.nodes)
     plastic[box] = np.maximum(indentation - contact.gap[box] - displacement, 0.0)
     return replace(
