@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -201,7 +202,7 @@ def law():
 def points(law):
     """The law of two glass spheres, with what is fitted to it."""
     found = law(yield_pressure=560e6)
-    return found.model_copy(update={"laws": fitted_laws(found)})
+    return replace(found, laws=fitted_laws(found))
 
 
 @pytest.fixture(scope="session")

@@ -111,6 +111,7 @@ def test_a_law_is_made_and_exported(results, cli, tmp_path):
             "restitution_kokkos.lmp",
             "match_velocity.py",
             "collision.in",
+            "restitution_lammps.txt",
         ]
         assert files[0].read_text() == (tmp_path / "a" / "restitution.lmp").read_text()
     rs.export(law, to="yade", velocity=speed, out=tmp_path / "d")

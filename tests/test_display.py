@@ -75,7 +75,7 @@ def test_objects_say_what_matters(value, parts):
 
 def test_a_law_says_its_velocities_and_fits(points):
     text = repr(points)
-    assert text.startswith("Law: glass (R = 0.001 m) and glass (R = 0.001 m)\n")
+    assert text.startswith("Law: glass (R = 1 mm) and glass (R = 1 mm)\n")
     assert "COR 0.3000 to 0.9500 at 13 velocities, 10 mm/s to 10 m/s" in text
     assert "fits: constant, " in text
     assert text.count("\n") == 2

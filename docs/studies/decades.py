@@ -10,6 +10,7 @@ materials, because law and direct run share them. Takes about three minutes.
 from __future__ import annotations
 
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -61,9 +62,9 @@ def checks(number: int, place: Path) -> list[dict]:
     contact = dict(zip(NAMES, CONTACTS[number], strict=True))
     law = law_at(contact, VELOCITIES, place / f"law-{number}", "true")
     bare = [
-        point.model_copy(update={"error": 0.0}) for point in law.points
+        replace(point, error=0.0) for point in law.points
     ]  # then `at` gives the error of interpolation alone
-    strict = law.model_copy(update={"points": tuple(bare)})
+    strict = replace(law, points=tuple(bare))
     drawn = np.random.default_rng(100 + number).uniform(np.log(0.001), np.log(10.0), BETWEEN)
     direct = law_at(contact, np.sort(np.exp(drawn)), place / f"direct-{number}", "false")
     return [

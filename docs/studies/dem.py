@@ -14,6 +14,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -91,7 +92,7 @@ def coverage(text: str, place: Path) -> None:
     rows, inside = [], {share: [] for share in SHARES}
     for seed in (1, 2, 3, 4):
         law = bare_law(run(text.replace("seed = 1", f"seed = {seed}"), place / f"finer-{seed}"))
-        known = law.model_copy(update={"points": law.points[:: len(SHARES) + 1]})
+        known = replace(law, points=law.points[:: len(SHARES) + 1])
         for k, point in enumerate(law.points):
             rows.append(
                 {

@@ -1,6 +1,7 @@
 """Parameters are recovered from data of known ones, and what the data do not tell is said."""
 
 import math
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,8 +11,14 @@ import pytest
 from restitution.calibration.findings import combination, findings, identifiable
 from restitution.calibration.fit import fit
 from restitution.calibration.measured import Measured
+from restitution.calibration.uncertainty import MODEL_SHARES
+from restitution.case.case_file import parse_case
 from restitution.errors import CaseError
+from restitution.theory import ThorntonNing
 from tolerance import approx
+
+sys.path.append(str(Path(__file__).parents[2] / "docs" / "studies"))
+import fit_model_error
 
 
 def values(found):
@@ -143,3 +150,25 @@ def test_a_case_that_cannot_be_solved_is_refused(smooth_case):
     fast = Measured(np.array([5.0, 9.0]), np.array([0.3, 0.2]), np.array([0.01, 0.01]))
     with pytest.raises(CaseError, match="cannot be solved at the first guess"):
         fit(smooth_case("900 MPa"), Path(), fast, ["yield_pressure"])
+
+
+@pytest.mark.parametrize(("p_y", "seed"), [(0.8e9, 0), (1.4e9, 1), (2.5e9, 2)])
+def test_the_combined_interval_holds_the_yield_pressure_of_another_model(smooth_case, p_y, seed):
+    """The closed form of Thornton and Ning cuts the pressure off, which the case does not."""
+    bodies = parse_case(smooth_case("1 GPa")).pair()
+    fastest = 0.13 * (p_y / 1e9) ** 2.5
+    V = np.geomspace(fastest / 13, fastest, 8)
+    exact = ThorntonNing(bodies.radius, bodies.contact_modulus, p_y).restitution(V, bodies.mass)
+    noise = 0.01 * np.random.default_rng(seed).standard_normal(V.size)
+    measured = Measured(V, exact + noise, np.full(V.size, 0.01))
+    text = smooth_case(f"{1.5e-6 * p_y} MPa").replace("0.8 um", f"{0.8 * p_y / 1e9} um")
+    found = fit(text, Path(), measured, ["yield_pressure"])
+    off = abs(math.log(values(found)[0] / p_y))
+    assert off < found.uncertainty.combined_halves[0] < math.log(1.5)
+    assert found.uncertainty.halves[0] < off  # the interval of the data alone misses it
+
+
+@pytest.mark.parametrize("model", sorted(MODEL_SHARES))
+def test_the_share_of_the_model_error_is_that_of_the_finite_elements(model):
+    found = np.quantile(fit_model_error.shares(model), 0.95)
+    assert 0.9 * MODEL_SHARES[model] < found <= MODEL_SHARES[model]

@@ -45,7 +45,13 @@ def test_deviations_may_be_left_out_and_std_comes_first(tmp_path):
         (HEAD + "0.1,0.5,0.1\n-1,0.5,0.1\n", 'line 3: velocity_m_per_s = "-1" is not a velocity'),
         (HEAD + "0,0.5,0.1\n", "is not a velocity of 1e-09 to 10000 m/s"),
         (HEAD + "nan,0.5,0.1\n", "is not a number"),
-        (HEAD + "0.1,1.2,0.1\n", 'restitution = "1.2" is outside 0 to 1'),
+        (HEAD + "0.1,-0.1,0.1\n", 'restitution = "-0.1" is negative'),
+        (HEAD + "0.1,1.4,0.1\n", 'restitution = "1.4" is above 1.3, which is 1 and 3 standard'),
+        (
+            "velocity_m_per_s,restitution\n0.1,1.07\n",
+            "is above 1.06, which is 1 and 3 standard deviations of 0.02, assumed because the "
+            "column restitution_std is missing",
+        ),
         (HEAD + "0.1,,0.1\n", 'restitution = "" is not a number'),
         (HEAD + "0.1,0.5\n", 'restitution_std = "" is not a number'),
         (HEAD + "0.1,0.5,0\n", 'restitution_std = "0" is not a standard deviation'),
@@ -60,6 +66,14 @@ def test_bad_tables_are_refused(tmp_path, text, words):
     assert words in str(refusal.value)
     assert str(refusal.value).startswith(f"{path}: ")
     assert "\n" not in str(refusal.value)
+
+
+def test_noise_above_one_is_kept(tmp_path):
+    path = tmp_path / "m.csv"
+    path.write_text(HEAD + "0.1,1.0035,0.01\n0.2,1.029,0.01\n")
+    assert read_measured(path).restitution == approx([1.0035, 1.029])
+    path.write_text("velocity_m_per_s,restitution\n0.1,1.0035\n")
+    assert read_measured(path).restitution == approx([1.0035])
 
 
 def test_what_is_no_file_is_refused(tmp_path):

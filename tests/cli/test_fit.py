@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 
 import pytest
 
@@ -50,6 +51,28 @@ def test_one_point_is_said_in_the_singular(cli, files):
     assert "\n1 point, rms residual of COR" in said
 
 
+def test_one_combined_interval_comes_first_and_keys_are_whole(cli, files, monkeypatch):
+    from restitution.cli import console
+
+    (files / "m.csv").write_text(MEASURED + "0.01,1.0035\n")
+    monkeypatch.setattr(console.answers, "_width", 80)
+    status, said, _ = call(cli, files)
+    assert status == 0
+    lines = said.splitlines()
+    found = json.loads((files / "out" / "fit.json").read_text())["parameters"][0]
+    first, second = (
+        [1e6 * float(word) for word in re.findall(r"(\S+) MPa", line)] for line in lines[:2]
+    )
+    assert lines[0].startswith("interface.yield_pressure = ")
+    assert lines[0].endswith("(data and model)")
+    assert first == approx([found["value"], found["low"], found["high"]], rel=1e-3)
+    assert lines[1].startswith("  of the data alone: ")
+    assert second == approx([found["low_from_data"], found["high_from_data"]], rel=1e-3)
+    assert first[1] < second[0] < second[1] < first[2]
+    assert "no column restitution_std: every point is assumed to have the standard" in said
+    assert "1 of the measured COR are above 1; they are not cut" in said
+
+
 def test_files_belong_together_and_the_fitted_case_runs(cli, files):
     status, said, _ = call(cli, files)
     out = files / "out"
@@ -91,7 +114,7 @@ def test_files_belong_together_and_the_fitted_case_runs(cli, files):
         ("xyz", MEASURED, "--free: xyz is not a key of the case"),
         (",", MEASURED, "--free: names no key"),
         ("yield_pressure", "velocity,restitution\n1,0.5\n", "column velocity_m_per_s"),
-        ("yield_pressure", MEASURED.replace("0.8", "1.8"), "is outside 0 to 1"),
+        ("yield_pressure", MEASURED.replace("0.8", "1.8"), "is above 1.06"),
         (
             "yield_pressure",
             MEASURED[:38],

@@ -14,6 +14,16 @@ def test_the_list_has_every_material(cli):
     assert rows["glass"].split()[4] == "-"
 
 
+def test_a_narrow_terminal_has_one_line_for_each_material(cli, monkeypatch):
+    from restitution.cli import console
+
+    cli("materials")
+    monkeypatch.setattr(console.answers, "_width", 80)
+    rows = cli("materials")[1].splitlines()[1:-1]
+    assert [row.split()[0] for row in rows] == list(materials())
+    assert max(map(len, rows)) <= 80
+
+
 def test_one_material_has_its_sources(cli):
     status, said, _ = cli("materials", "Soda-Lime")
     assert status == 0

@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 
 import pytest
 
@@ -25,8 +26,8 @@ def constant():
 
     def make(law, e):
         changes = {"restitution": e, "ratio": e**2}
-        points = tuple(point.model_copy(update=changes) for point in law.points)
-        return law.model_copy(update={"points": points})
+        points = tuple(replace(point, **changes) for point in law.points)
+        return replace(law, points=points)
 
     return make
 
@@ -61,7 +62,7 @@ def on_wall(law) -> PairTable:
 def hostile(law) -> Particle:
     """A sphere whose name tries to end the comments and strings of every code."""
     name = '"""\n*/ } shell rm\r\n${x} $(y) \\'
-    return law().first.model_copy(update={"name": name + "\nquit 1\u2028 ' ; # Größe µ €&"})
+    return replace(law().first, name=name + "\nquit 1\u2028 ' ; # Größe µ €&")
 
 
 @pytest.fixture

@@ -1,6 +1,7 @@
 """Drake gives back the restitution that was exported."""
 
 import re
+from dataclasses import replace
 
 import pytest
 
@@ -32,7 +33,7 @@ def test_unlike_spheres_and_walls_rebound_as_exported(mixed, drake, texts):
 
 def test_the_file_says_what_e_is_at_half_and_twice_the_velocity(equal, drake, texts):
     files = write(equal, 0.5)
-    said = re.search(r"at 0.5 m/s, (\S+) at half and (\S+) at", files["restitution_drake.py"])
+    said = re.search(r"# e = \S+, (\S+) at half and (\S+) at", files["restitution_drake.py"])
     folder = texts(files)
     assert drake.ratios(folder, 0.25) == approx([float(said[1])], rel=1e-3)
     assert drake.ratios(folder, 1.0) == approx([float(said[2])], rel=1e-3)
@@ -45,7 +46,7 @@ def test_restitution_is_reproduced_from_the_least_to_one(drake, law, constant, t
 
 
 def test_small_spheres_rebound(drake, law, texts):
-    sphere = law().first.model_copy(update={"radius": 1e-5})
+    sphere = replace(law().first, radius=1e-5)
     found = law(sphere, sphere)
     folder = texts(write(pair_table([found]), 1.0))
     assert drake.ratios(folder) == approx([found.at(1.0).restitution], rel=1e-3)
@@ -53,7 +54,7 @@ def test_small_spheres_rebound(drake, law, texts):
 
 def test_a_discrete_plant_loses_what_the_file_says(law, constant, drake, texts):
     files = write(pair_table([constant(law(), 0.8)]), 1.0)
-    assert "0.766 with 100" in " ".join(files["restitution_drake.py"].replace("#", "").split())
+    assert "0.766 with 100" in " ".join(files["restitution_drake.txt"].split())
     script = files[SCRIPT].replace("time_step=0.0", "time_step=CONTACT[I, J] / 100")
     script = re.sub(r"ResetIntegrator.*\n.*fixed_step_mode.*\n", "", script)
     script = script.replace("    ResetIntegratorFromFlags, Simulator", "    Simulator")
@@ -64,7 +65,8 @@ def test_names_and_titles_stay_in_their_comments(hostile, law, texts):
     bad = law(hostile, hostile, title='"""\n{x} quit(', warnings=('"""\nquit(',))
     for name, text in write(pair_table([bad]), 1.0).items():
         assert text.isascii()
-        compile(text, name, "exec")
+        if name.endswith(".py"):
+            compile(text, name, "exec")
 
 
 def test_pairs_that_stick_are_refused(law, constant):

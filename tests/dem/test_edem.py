@@ -1,6 +1,7 @@
 """The tables for EDEM; EDEM itself is not run."""
 
 import csv
+from dataclasses import replace
 
 from restitution.dem.codes.edem import write
 from restitution.dem.pair_table import pair_table
@@ -58,9 +59,7 @@ def test_springs_are_those_at_the_velocity(law):
 
 
 def test_springs_are_left_out_beyond_the_velocities_they_were_fitted_to(law):
-    coarse = tuple(
-        point.model_copy(update={"resolved": point.velocity > 0.05}) for point in law().points
-    )
+    coarse = tuple(replace(point, resolved=point.velocity > 0.05) for point in law().points)
     table = pair_table([law(laws=(SPRINGS,), points=coarse)])
     for V, known in ((0.03, False), (0.1, True)):
         (row,) = rows(write(table, V)["restitution_edem.csv"])
@@ -80,7 +79,7 @@ def test_pairs_that_stick_are_named(law, constant):
 
 def test_names_are_escaped_and_warnings_carried(hostile, law):
     files = write(pair_table([law(hostile, hostile, warnings=("coarse\n=1+1",))]), 1.0)
-    for text in files.values():
+    for name, text in files.items():
         assert text.isascii()
-        assert "# WARNING: pair 1 1: coarse/n=1+1" in text
-        assert len(rows(text)) == 1
+        assert "WARNING: pair 1 1: coarse/n=1+1" in text
+        assert name.endswith(".txt") or len(rows(text)) == 1

@@ -2,6 +2,7 @@
 
 import csv
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -71,7 +72,7 @@ def test_lammps_rebounds_as_the_law_of_the_run_says(folder, cli, lammps, tmp_pat
 
 
 def test_the_table_of_all_pairs(stored, law, cli, tmp_path):
-    small = law().first.model_copy(update={"radius": 2e-4})
+    small = replace(law().first, radius=2e-4)
     folders = [stored("a"), stored("b", small), stored("c", small, small)]
     status, _, _ = cli("export", *folders, "--to", "csv", "-o", tmp_path / "all")
     assert status == 0
@@ -99,9 +100,9 @@ def test_nothing_is_exported_beyond_the_velocities_computed(law, code):
 @pytest.mark.parametrize("code", [code for code in CODES if code != "csv"])
 def test_what_is_not_resolved_is_said_in_the_files(law, code):
     base = law()
-    points = tuple(point.model_copy(update={"resolved": False}) for point in base.points)
+    points = tuple(replace(point, resolved=False) for point in base.points)
     warning = "13 of 13 depths are not resolved; refine the grid"
-    coarse = base.model_copy(update={"points": points, "warnings": (warning,)})
+    coarse = replace(base, points=points, warnings=(warning,))
     for name, text in export([coarse], code, 1.0).items():
         assert "WARNING: unresolved" in text, name
         joined = " ".join(line.lstrip("#/ ") for line in text.splitlines())
@@ -109,7 +110,7 @@ def test_what_is_not_resolved_is_said_in_the_files(law, code):
 
 
 def test_refusals(stored, law, refused, cli, tmp_path):
-    small = law().first.model_copy(update={"radius": 2e-4})
+    small = replace(law().first, radius=2e-4)
     one, unlike = stored("one"), stored("unlike", small)
 
     def said(*arguments):
@@ -121,7 +122,8 @@ def test_refusals(stored, law, refused, cli, tmp_path):
     assert "nothing is extrapolated" in said(one, "--to", "edem", "--velocity", "20 m/s")
     message = said(unlike, "--to", "lammps", "--velocity", "1 m/s")
     assert "needs a separate law for every pair of particle types" in message
-    assert "two laws are given" in said(one, one, "--to", "csv")
+    other = stored("other", at=2.0)
+    assert "two laws are given" in said(one, other, "--to", "csv")
     assert "holds no law" in said(tmp_path, "--to", "csv")
     assert not (tmp_path / "x").exists()
     assert cli("export", one, "--to", "csv", "-o", tmp_path / "y")[0] == 0
@@ -138,7 +140,7 @@ def test_the_limit_of_a_code_is_printed(stored, cli, tmp_path, code, note):
 
 
 def test_an_unresolved_velocity_is_warned_of(stored, law, cli, tmp_path):
-    points = tuple(point.model_copy(update={"resolved": False}) for point in law().points)
+    points = tuple(replace(point, resolved=False) for point in law().points)
     folder = stored("coarse", points=points)
     _, _, said = cli("export", folder, "--to", "edem", "--velocity", "1 m/s", "-o", tmp_path / "e")
     assert "the grid does not resolve the contact at 1 m/s" in said
@@ -148,7 +150,7 @@ def test_the_contact_time_is_that_of_a_hertzian_impact(law):
     """½ m* V² = ½ m* v² + (8/15) E* √R* δ^(5/2), integrated from touch to touch."""
     from scipy.integrate import quad
 
-    from restitution.dem.export_common import contact_time
+    from restitution.dem.pair import contact_time
 
     found = law()
     deepest = (15 * found.mass / (16 * found.contact_modulus * found.radius**0.5)) ** 0.4
@@ -159,7 +161,7 @@ def test_the_contact_time_is_that_of_a_hertzian_impact(law):
 
 def test_the_comment_names_e_at_twice_the_velocity_up_to_the_end_of_the_law(law):
     """Stored velocities differ from the prescribed ones in the last digits."""
-    text = export([law()], "lammps", 5.0 * (1 + 1e-8))["restitution.lmp"]
+    text = export([law()], "lammps", 5.0 * (1 + 1e-8))["restitution_lammps.txt"]
     assert " at 10 m/s" in text
 
 

@@ -1,6 +1,7 @@
 """LAMMPS reproduces the exported restitution."""
 
 import re
+from dataclasses import replace
 
 import pytest
 
@@ -70,37 +71,41 @@ def test_names_and_titles_stay_in_their_comments(hostile, lammps, law, texts):
 
 
 def test_comments_tell_where_e_comes_from_and_how_far_to_trust_it(law):
-    said = " ".join(write(pair_table([law()]), 1.0)["restitution.lmp"].replace("#", "").split())
+    files = write(pair_table([law()]), 1.0)
+    said = " ".join(files["restitution_lammps.txt"].split())
     assert "written by restitution" in said
     assert "e = 0.516667 +/- 0.004 at 1 m/s" in said
     assert "0.5819 at 0.5 m/s" in said
     assert "0.4515 at 2 m/s" in said
-    assert "glass (R = 0.001 m)" in said
+    assert "glass (R = 1 mm)" in said
     assert "R* = 0.0005 m, E* = 3.73333e+10 Pa" in said
     assert "yield pressure p_y: 1e+09 Pa; convention: mean pressure of a plastic contact" in said
     assert "end of contact assumed for e: the force is back to zero" in said
     assert "computed from 0.01 to 10 m/s" in said
     assert "End of a contact in LAMMPS: the overlap is back to zero" in said
-    assert "Friction 0.5 is a placeholder" in said
-    assert "WARNING" not in said
+    assert "Friction 0.5 is a placeholder" in files["restitution.lmp"]
+    assert "restitution_lammps.txt" in files["restitution.lmp"]
+    assert not any("WARNING" in text for text in files.values())
 
 
 def test_velocities_beyond_the_law_are_not_named(law):
-    said = write(pair_table([law()]), 10.0)["restitution.lmp"]
+    said = write(pair_table([law()]), 10.0)["restitution_lammps.txt"]
     assert "at 5 m/s" in said
     assert "20 m/s" not in said
 
 
 def test_warnings_are_carried_into_every_file(law):
-    point = law().points[0].model_copy(update={"resolved": False})
+    point = replace(law().points[0], resolved=False)
     found = law(warnings=("the grid is coarse",), work_of_adhesion=0.2)
-    found = found.model_copy(update={"points": (point, *found.points[1:])})
+    found = replace(found, points=(point, *found.points[1:]))
     files = write(pair_table([found]), 0.012)
-    for text in files.values():
-        assert re.search("^# WARNING: unresolved at 0.012 m/s", text, re.MULTILINE)
-        assert "# WARNING: pair 1 1: the grid is coarse" in text
-    assert "pull-off force is not modelled" in files["restitution.lmp"].replace("\n#    ", "")
-    assert "unresolved" not in write(pair_table([found]), 1.0)["restitution.lmp"]
+    for name, text in files.items():
+        sign = "" if name.endswith(".txt") else "# "
+        assert re.search(f"^{sign}WARNING: unresolved at 0.012 m/s", text, re.MULTILINE)
+        assert f"{sign}WARNING: pair 1 1: the grid is coarse" in text
+    assert "pull-off force is not modelled" in " ".join(files["restitution_lammps.txt"].split())
+    for text in write(pair_table([found]), 1.0).values():
+        assert "unresolved" not in text
 
 
 def test_pairs_that_stick_are_refused(law, constant):

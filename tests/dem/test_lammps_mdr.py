@@ -1,6 +1,7 @@
 """The fitted `mdr` in the export to LAMMPS: offered for a pair, or left out with the reason."""
 
 import re
+from dataclasses import replace
 
 import pytest
 
@@ -20,13 +21,13 @@ MDR = FittedLaw(
     rms=0.05,
     worst=0.0987,
 )
-WEAK = MDR.model_copy(update={"parameters": MDR.parameters | {"yield_strength_Pa": 2e8}})
+WEAK = replace(MDR, parameters=MDR.parameters | {"yield_strength_Pa": 2e8})
 
 
 @pytest.fixture
 def plate(law):
     """A wall of the material of the spheres."""
-    return law().first.model_copy(update={"name": "plate", "radius": None})
+    return replace(law().first, name="plate", radius=None)
 
 
 def fragment(laws, V=1.0):
@@ -85,13 +86,13 @@ def test_a_wall_alone_is_told_what_its_line_needs(law, plate):
 
 def test_several_types_have_no_line_and_are_told_why(mixed, plate):
     """Every pair without a line has a reason, and LAMMPS rejects the lines that are left out."""
-    laws = [found.model_copy(update={"laws": (MDR,)}) for _, _, found in mixed.pairs()]
+    laws = [replace(found, laws=(MDR,)) for _, _, found in mixed.pairs()]
     said = fragment(laws)
     assert " mdr 7e" not in said
-    pairs = re.findall(r"^# No mdr line for pair (\d \d): ", said, re.MULTILINE)
-    assert pairs == ["1 1", "1 2", "1 3", "2 2", "2 3"]
-    assert without_breaks(said).count("LAMMPS accepts one mdr model in a pair_style") == 3
-    assert without_breaks(said).count("mdr at a wall only if pair_style granular has mdr") == 2
+    told = without_breaks(said)
+    assert "No mdr line for pairs 1 1, 1 2, 2 2: LAMMPS accepts one mdr model in a" in told
+    assert "No mdr line for pairs 1 3, 2 3: LAMMPS accepts mdr at a wall only if" in told
+    assert told.count("No mdr line") == 2
 
 
 def test_lammps_refuses_several_mdr_or_mdr_beside_another_model(mixed, lammps, texts):
@@ -113,10 +114,10 @@ def test_lammps_refuses_several_mdr_or_mdr_beside_another_model(mixed, lammps, t
     [
         ((), "no law was fitted to it"),
         (
-            (MDR.model_copy(update={"name": "constant"}),),
+            (replace(MDR, name="constant"),),
             "only to a sphere on a wall and to two equal",
         ),
-        ((MDR.model_copy(update={"worst": 0.2}),), "is off by up to 0.2 in e"),
+        ((replace(MDR, worst=0.2),), "is off by up to 0.2 in e"),
     ],
 )
 def test_a_pair_without_a_good_fit_is_told_so(law, fits, reason):
@@ -126,9 +127,7 @@ def test_a_pair_without_a_good_fit_is_told_so(law, fits, reason):
 
 
 def test_no_line_is_offered_beyond_the_velocities_of_its_fit(law):
-    coarse = tuple(
-        point.model_copy(update={"resolved": point.velocity > 0.05}) for point in law().points
-    )
+    coarse = tuple(replace(point, resolved=point.velocity > 0.05) for point in law().points)
     found = law(laws=(MDR,), points=coarse)
     assert "fitted from 0.05623 to 10 m/s, and 0.03 m/s is outside" in fragment([found], 0.03)
     assert "# pair_coeff 1 1 mdr" in fragment([found], 0.1)

@@ -1,5 +1,7 @@
 """LIGGGHTS reproduces the exported restitution."""
 
+from dataclasses import replace
+
 import pytest
 
 from restitution.dem.codes.liggghts import LOWEST, write
@@ -26,7 +28,7 @@ def test_unlike_spheres_and_walls_rebound_as_exported(mixed, liggghts, texts, V)
 
 @pytest.mark.parametrize("E", [1e6, 1e8, 1e9, 1e11])
 def test_any_modulus_is_taken(liggghts, law, texts, E):
-    sphere = law().first.model_copy(update={"youngs_modulus": E})
+    sphere = replace(law().first, youngs_modulus=E)
     soft = law(sphere, sphere)
     said = write(pair_table([soft]), 0.1)["collision.in.liggghts"]
     assert ("hard_particles yes" in said) == (E > 1e9)
@@ -54,7 +56,7 @@ def test_names_and_titles_stay_in_their_comments(hostile, liggghts, law, texts):
 
 def test_warnings_are_carried_into_every_file(law):
     for text in write(pair_table([law(warnings=("the grid is coarse",))]), 1.0).values():
-        assert "# WARNING: pair 1 1: the grid is coarse" in text
+        assert "WARNING: pair 1 1: the grid is coarse" in text
 
 
 def test_missing_pairs_are_named(mixed):

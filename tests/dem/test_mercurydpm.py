@@ -3,6 +3,7 @@
 import re
 import shutil
 import subprocess
+from dataclasses import replace
 
 import pytest
 
@@ -65,9 +66,9 @@ def test_it_is_valid_beside_stand_ins(mixed, hostile, law, texts):
 
 
 def test_a_wall_keeps_its_density(law):
-    plate = law().first.model_copy(update={"name": "plate", "radius": None, "density": 7850.0})
+    plate = replace(law().first, name="plate", radius=None, density=7850.0)
     for density, written in ((7850.0, "7850"), (None, "1000")):
-        wall = plate.model_copy(update={"density": density})
+        wall = replace(plate, density=density)
         text = write(pair_table([law(), law(law().first, wall)]), 1.0)["restitution_mercury.h"]
         assert re.findall(r"setDensity\((\S+)\)", text) == ["2500", written]
 
@@ -83,3 +84,15 @@ def test_missing_pairs_are_named(mixed):
         write(pair_table([law for pair, law in laws.items() if pair != (1, 2)]), 1.0)
     with pytest.raises(CaseError, match=r"MercuryDPM needs .* steel .* and plate"):
         write(pair_table([law for pair, law in laws.items() if pair != (2, 3)]), 1.0)
+
+
+def test_a_wall_alone_is_a_header_that_needs_e_of_the_spheres(on_wall, texts):
+    compiler = shutil.which("g++") or pytest.skip("g++ is not installed")
+    main = '#include "restitution_mercury.h"\nvoid f(DPMBase& d) { addRestitutionSpecies(d, %s); }'
+    for number, (e, status) in enumerate((("0.9", 0), ("", 1))):
+        files = write(on_wall, 1.0)
+        folder = texts({**files, "DPMBase.h": DPM_BASE, "f.cc": main % e}, str(number))
+        (folder / "Species").mkdir()
+        (folder / "Species" / "HertzianViscoelasticMindlinSpecies.h").write_text(SPECIES)
+        command = [compiler, "-std=c++17", "-Wall", "-Werror", "-fsyntax-only", "-I.", "f.cc"]
+        assert subprocess.run(command, cwd=folder, capture_output=True).returncode == status

@@ -3,6 +3,7 @@
 import math
 import re
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 
 import pytest
 
@@ -42,7 +43,7 @@ def test_restitution_is_reproduced_from_the_least_to_one(mujoco, law, constant, 
 
 @pytest.mark.parametrize(("radius", "velocity"), [(1e-5, 10.0), (0.05, 0.1)])
 def test_small_and_large_spheres_rebound(mujoco, law, texts, radius, velocity):
-    sphere = law().first.model_copy(update={"radius": radius})
+    sphere = replace(law().first, radius=radius)
     found = law(sphere, sphere)
     asked = found.at(velocity).restitution
     folder = texts(write(pair_table([found]), velocity))

@@ -3,6 +3,7 @@
 import csv
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -25,8 +26,8 @@ ANGLES = (5.0, 12.0, 20.0, 30.0, 60.0)  # sticking at first, partial slip, and f
 SMOOTH = Particle(
     name="bead", radius=1e-3, youngs_modulus=70e9, poissons_ratio=0.25, density=2500.0
 )
-OTHER = SMOOTH.model_copy(update={"name": "other", "radius": 0.6e-3, "youngs_modulus": 200e9})
-WALL = SMOOTH.model_copy(update={"name": "wall", "radius": None})
+OTHER = replace(SMOOTH, name="other", radius=0.6e-3, youngs_modulus=200e9)
+WALL = replace(SMOOTH, name="wall", radius=None)
 
 
 def body(particle):

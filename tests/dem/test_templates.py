@@ -1,8 +1,11 @@
 """The templates of the exports: all are used, and the files are well-formed."""
 
+import re
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
+from itertools import combinations_with_replacement
 from pathlib import Path
 
 import pytest
@@ -29,14 +32,16 @@ def exports(law, points, mixed, on_wall):
     }
     of_wall = [each for _, _, each in on_wall.pairs()]
     return found | {
-        ("wall", "lammps", name): text for name, text in export(of_wall, "lammps", 1.0).items()
+        ("wall", code, name): text
+        for code in CODES
+        for name, text in export(of_wall, code, 1.0).items()
     }
 
 
 def test_every_template_is_of_a_file_and_every_file_of_a_template(exports):
     files = {name for _, code, name in exports if code not in WITHOUT_TEMPLATES}
     assert {path.name for path in TEMPLATES.iterdir()} == {
-        f"{name}.j2" for name in (*files, *PARTS)
+        f"{name}.j2" for name in (*files, *PARTS) if not name.endswith(".txt")
     }
 
 
@@ -54,7 +59,7 @@ def test_nothing_is_left_to_fill_in(exports):
 def test_quotes_are_closed_and_continued_lines_are_indented(exports, code):
     """Lines after a line that ends in & are indented, and no others."""
     for key, text in exports.items():
-        if key[1] != code or key[2].endswith(".py"):
+        if key[1] != code or key[2].endswith((".py", ".txt")):
             continue
         continued = False
         for line in text.splitlines():
@@ -90,3 +95,33 @@ def test_scripts_are_python(exports, texts):
         text=True,
     )
     assert done.returncode == 0, done.stdout
+
+
+@pytest.fixture(scope="module")
+def mixture(law):
+    """The laws of a mixture of four sizes and a wall; every law has the same warning."""
+    ball = law().first
+    sizes = [replace(ball, radius=1e-3 * 1.5**k) for k in range(4)]
+    plate = replace(ball, name="plate", radius=None)
+    pairs = [*combinations_with_replacement(sizes, 2), *((size, plate) for size in sizes)]
+    return [law(one, two, warnings=(f"the grid is coarse at {k} depths",))
+            for k, (one, two) in enumerate(pairs)]  # fmt: skip
+
+
+@pytest.mark.parametrize("code", [code for code in CODES if code != "csv"])
+def test_commands_come_first_and_equal_warnings_once(mixture, code):
+    for name, text in export(mixture, code, 1.0).items():
+        assert text.count("WARNING:") == 1, name
+        assert "WARNING: all pairs: the grid is coarse at 0 depths (with other" in text, name
+        if name.endswith(".txt"):
+            continue
+        sign = "//" if name.endswith(".h") else "#"
+        lines = [line for line in _without_xml_comments(text).splitlines() if line.strip()]
+        words = [line for line in lines if not line.lstrip().startswith(sign)]
+        assert lines.index(words[0]) < 10, name
+        if name.startswith("restitution") and code != "edem":
+            assert len(words) > 0.5 * len(lines), name
+
+
+def _without_xml_comments(text):
+    return re.sub(r"<!--.*?-->", "#", text, flags=re.DOTALL) if "<mujoco" in text else text

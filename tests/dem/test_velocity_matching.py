@@ -9,7 +9,7 @@ import pytest
 
 from restitution.dem.codes import lammps as lammps_code
 from restitution.dem.codes import liggghts as liggghts_code
-from restitution.dem.export_common import contact_time
+from restitution.dem.pair import contact_time
 from restitution.dem.pair_table import pair_table
 from tolerance import approx
 

@@ -2,6 +2,7 @@
 
 import json
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -97,14 +98,14 @@ def test_names_and_titles_break_out_of_nothing(hostile, law):
     bad = law(hostile, hostile, title='"""\n{x} quit(', warnings=('"""\nquit(',))
     files = write(pair_table([bad]), 1.0)
     assert all(text.isascii() for text in files.values())
-    for name, text in files.items():
-        compile(text, name, "exec")
+    for name in ("restitution_yade.py", "collision_yade.py"):
+        compile(files[name], name, "exec")
     assert module(pair_table([bad]))["MATERIALS"][0][1:] == (7e10, 0.25, 2500)
 
 
 def test_warnings_are_carried_into_every_file(law):
     for text in write(pair_table([law(warnings=("the grid is coarse",))]), 1.0).values():
-        assert "# WARNING: pair 1 1: the grid is coarse" in text
+        assert "WARNING: pair 1 1: the grid is coarse" in text
 
 
 def test_pairs_that_stick_or_are_missing_are_refused(law, constant, mixed):
@@ -150,9 +151,9 @@ def test_a_wall_keeps_its_density(law):
         table = pair_table([law(), law(law().first, wall)])
         return [row[3] for row in module(table)["MATERIALS"]]
 
-    plate = law().first.model_copy(update={"name": "plate", "radius": None, "density": 7850.0})
+    plate = replace(law().first, name="plate", radius=None, density=7850.0)
     assert densities(plate) == [2500.0, 7850.0]
-    unknown = plate.model_copy(update={"density": None})
+    unknown = replace(plate, density=None)
     assert densities(unknown) == [2500.0, 1000.0]
 
 

@@ -8,6 +8,7 @@ import io
 import math
 import os
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -55,7 +56,7 @@ spheres = st.builds(
     poissons_ratio=st.floats(-0.9, 0.5),
     density=st.one_of(st.none(), spread(1, 1e5)),
 )
-walls = spheres.map(lambda body: body.model_copy(update={"radius": None}))
+walls = spheres.map(lambda body: replace(body, radius=None))
 ratios = st.one_of(st.floats(-2, 1), st.sampled_from([-1.0, 0.0, 1.0, 1 - 1e-9, 1e-12]))
 
 
@@ -102,8 +103,8 @@ def laws(draw, most=14):
         sticks_below=None,
         points=tuple(draw(one_point(V, mass)) for V in velocities.tolist()),
     )
-    law = law.model_copy(update={"sticks_below": law.curve().begins()})
-    return law.model_copy(update={"fit": compact_fit(law)})
+    law = replace(law, sticks_below=law.curve().begins())
+    return replace(law, fit=compact_fit(law))
 
 
 shares = st.floats(0, 1)
@@ -199,7 +200,7 @@ def test_the_table_has_no_fit_where_nothing_is_resolved(law):
 @tried(3)
 @given(laws(most=4))
 def test_fitted_laws_are_silent_where_nothing_is_resolved(law):
-    found = law.model_copy(update={"laws": fitted_laws(law)})
+    found = replace(law, laws=fitted_laws(law))
     low, high = found.fitted_range or (math.inf, -math.inf)
     for each in found.laws:
         assert 0 <= each.rms <= each.worst * (1 + 1e-12) <= 1 + 1e-9

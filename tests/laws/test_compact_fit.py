@@ -1,6 +1,7 @@
 """The compact fit, compared with known laws."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -22,17 +23,16 @@ def with_ratios(law):
 
     def make(V, ratio, **values):
         points = [
-            some.points[0].model_copy(
-                update={
-                    "velocity": float(v),
-                    "ratio": float(r),
-                    "restitution": float(np.sqrt(np.clip(r, 0, 1))),
-                    "resolved": True,
-                }
+            replace(
+                some.points[0],
+                velocity=float(v),
+                ratio=float(r),
+                restitution=float(np.sqrt(np.clip(r, 0, 1))),
+                resolved=True,
             )
             for v, r in zip(V, ratio, strict=True)
         ]
-        return some.model_copy(update={"points": tuple(points), **values})
+        return replace(some, points=tuple(points), **values)
 
     return make
 
@@ -101,17 +101,15 @@ def test_the_fit_has_no_value_outside_of_the_resolved_points(with_ratios):
     V = np.geomspace(0.01, 10, 14)
     ratio = np.concatenate([np.full(3, 0.574**2), np.ones(4), np.linspace(0.9, 0.4, 7)])
     law = with_ratios(V, ratio)
-    points = [
-        point.model_copy(update={"resolved": 3 <= k < 13}) for k, point in enumerate(law.points)
-    ]
-    law = law.model_copy(update={"points": tuple(points)})
+    points = [replace(point, resolved=3 <= k < 13) for k, point in enumerate(law.points)]
+    law = replace(law, points=tuple(points))
     fit = compact_fit(law)
     assert (fit.lowest, fit.highest) == (V[3], V[12]) == law.fitted_range
     assert fit.elastic_below == V[6]
     assert fit.restitution(V[3:7]).tolist() == [1.0] * 4
     assert np.isnan(fit.restitution(V)).tolist() == [True] * 3 + [False] * 10 + [True]
     assert np.isnan(fit.restitution([0.999 * V[3], 1.001 * V[12]])).all()
-    rows = law_rows(law.model_copy(update={"fit": fit}))
+    rows = law_rows(replace(law, fit=fit))
     assert [math.isnan(row["compact_fit"]) for row in rows] == [True] * 3 + [False] * 10 + [True]
 
 

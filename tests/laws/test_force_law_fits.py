@@ -1,10 +1,12 @@
 """Fits of force laws: points that a force law has made give its parameters back."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from restitution.laws import force_law_fits
-from restitution.laws.force_law_fits import NAMES, fitted_laws
+from restitution.laws.force_law_fits import NAMES, fitted_laws, too_few_points
 from restitution.laws.law import Particle
 from restitution.theory import EEPA, JKR, MDR, Luding, ThorntonNing, WaltonBraun
 from tolerance import approx
@@ -25,19 +27,18 @@ def made(law):
         seen = np.ones(V.size, dtype=bool) if resolved is None else resolved
         numbers = zip(V, np.broadcast_to(e, V.shape), force, seen, strict=True)
         points = tuple(
-            some.points[0].model_copy(
-                update={
-                    "velocity": float(v),
-                    "restitution": float(c),
-                    "ratio": float(c) ** 2,
-                    "loading_work": 0.5 * some.mass * float(v) ** 2,
-                    "force": float(F),
-                    "resolved": bool(known),
-                }
+            replace(
+                some.points[0],
+                velocity=float(v),
+                restitution=float(c),
+                ratio=float(c) ** 2,
+                loading_work=0.5 * some.mass * float(v) ** 2,
+                force=float(F),
+                resolved=bool(known),
             )
             for v, c, F, known in numbers
         )
-        return some.model_copy(update={"points": points})
+        return replace(some, points=points)
 
     return make
 
@@ -236,3 +237,58 @@ def test_each_fit_is_announced_before_it_begins(made):
     said = []
     fitted_laws(made(0.5, spring_force(1e6, 1e-6)), lambda *begun: said.append(begun))
     assert said == [(name, k + 1, len(NAMES)) for k, name in enumerate(NAMES)]
+
+
+@pytest.fixture
+def pulled_off(made, mass):
+    """A law with the COR and the pull-off forces of an adhesive model at V."""
+
+    def make(model, stiffness, exponent, *, misfit=1.0):
+        forces = misfit * model.pull_off_force(model.indentation_from_velocity(V, mass))
+        found = made(
+            model.restitution(V, mass),
+            spring_force(stiffness, mass, exponent),
+            work_of_adhesion=0.1,
+        )
+        points = zip(found.points, forces.tolist(), strict=True)
+        points = tuple(replace(point, pull_off_force=force) for point, force in points)
+        return replace(found, points=points)
+
+    return make
+
+
+@pytest.mark.parametrize("name", ["luding", "eepa"])
+def test_adhesive_models_have_the_pull_off_force(pulled_off, mass, name):
+    if name == "luding":
+        k, model = 2e6, Luding(0.5e-3, 2e6, 8e6, 4e5, 0.02)
+    else:
+        k, model = 5e9, EEPA(5e9, 9e9, 2e9, -2e-4, 1.5)
+    found = fit_of(pulled_off(model, k, 1.5 if name == "eepa" else 1.0), name)
+    assert found.pull_off_misfit < 0.03
+    assert found.worst < 0.01
+    assert f"within {100 * found.pull_off_misfit:.2g} % of the computed one" in found.note
+    assert "pull-off" in found.fitted_to
+    half = fit_of(pulled_off(model, k, 1.5 if name == "eepa" else 1.0, misfit=30.0), name)
+    assert half.pull_off_misfit > found.pull_off_misfit
+
+
+def test_adhesive_parameters_without_effect_are_zero(made, mass):
+    """Without pull-off forces a law that loses energy by yielding needs no adhesion."""
+    e = WaltonBraun(2e6, 4e6, 0.0).restitution(V, mass)
+    found = made(e, spring_force(2e6, mass), work_of_adhesion=1e-9)
+    for name in ("luding", "eepa"):
+        fit = fit_of(found, name)
+        adhesive = [v for key, v in fit.parameters.items() if "adhesive" in key or "const" in key]
+        assert all(value == 0 or abs(value) > 1e-9 for value in adhesive)
+        assert fit.pull_off_misfit is None
+
+
+def test_a_fit_from_few_points_is_warned_of(made):
+    few = np.arange(V.size) < 3
+    for resolved, warned in ((few, True), (np.arange(V.size) < 4, False)):
+        found = made(np.linspace(0.9, 0.5, V.size), spring_force(1e6, 1e-6), resolved=resolved)
+        found = replace(found, laws=fitted_laws(found))
+        assert bool(too_few_points(found)) == warned
+    assert "fitted to 3 resolved velocities, but a reliable fit needs 4" in too_few_points(
+        replace(found, points=found.points[:3])
+    )

@@ -3,6 +3,7 @@
 import csv
 import itertools
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -83,7 +84,7 @@ def test_the_error_of_the_example_holds_between_its_velocities_and_close_to_them
 def point_of(law, row):
     e = row["restitution"]
     changes = {"velocity": row["velocity_m_per_s"], "restitution": e, "ratio": e**2}
-    return law().points[0].model_copy(update={**changes, "error": row["restitution_error"]})
+    return replace(law().points[0], **changes, error=row["restitution_error"])
 
 
 @given(st.lists(st.floats(0, 1), min_size=2, max_size=8), st.data())
@@ -110,7 +111,7 @@ def test_the_error_is_continuous(law, values, data):
 
 def test_the_error_falls_towards_the_points_and_their_own_is_interpolated(law):
     one, two = (
-        point.model_copy(update={"error": error})
+        replace(point, error=error)
         for point, error in zip(law().points, (0.01, 0.03), strict=False)
     )
     found = law(points=(one, two))
@@ -208,7 +209,7 @@ def test_velocities_that_rounding_puts_beyond_an_end_belong_to_the_interval_ther
 def test_the_error_of_restitution_is_that_of_the_points_and_that_of_the_ratio(law):
     values = ((0.01, 0.81), (0.03, 0.25))
     ends = [
-        point.model_copy(update={"error": error, "ratio": ratio, "restitution": math.sqrt(ratio)})
+        replace(point, error=error, ratio=ratio, restitution=math.sqrt(ratio))
         for point, (error, ratio) in zip(law().points, values, strict=False)
     ]
     found = law(points=tuple(ends))

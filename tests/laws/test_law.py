@@ -4,13 +4,16 @@ import csv
 import json
 import math
 import shutil
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
 
 from restitution.errors import CaseError, DomainError, OutputError
+from restitution.laws.compact_fit import compact_fit
+from restitution.laws.force_law_fits import fitted_laws
 from restitution.laws.from_results import bare_law, law_of
-from restitution.laws.law import Law
+from restitution.laws.law import STORED_LAW
 from restitution.laws.law_files import read_law, write_law
 from tolerance import approx
 
@@ -83,7 +86,7 @@ def test_the_points_are_those_of_the_run(rough):
     assert (law.lowest, law.highest) == (law.points[0].velocity, law.points[-1].velocity)
     summary = json.loads((rough / "summary.json").read_text())
     assert law.warnings == tuple(summary["warnings"])
-    said = law.conventions.model_dump()
+    said = asdict(law.conventions)
     error = said.pop("restitution_error")
     assert error.startswith(
         "solver, grid, difference of this surface from the mean of 8 surfaces; not: the model"
@@ -270,7 +273,7 @@ def test_damaged_results_are_refused(rough, tmp_path):
     ],
 )
 def test_a_law_that_does_not_hold_together_is_refused(law, tmp_path, change, what):
-    content = json.loads(law().model_dump_json()) | change
+    content = json.loads(STORED_LAW.dump_json(law())) | change
     (tmp_path / "law.json").write_text(json.dumps(content))
     with pytest.raises(CaseError, match=f"is not a law of this version .*{what}"):
         read_law(tmp_path)
@@ -278,7 +281,7 @@ def test_a_law_that_does_not_hold_together_is_refused(law, tmp_path, change, wha
 
 def test_points_that_do_not_hold_together_are_refused(law, tmp_path):
     def refused(change):
-        content = json.loads(law().model_dump_json())
+        content = json.loads(STORED_LAW.dump_json(law()))
         change(content["points"])
         (tmp_path / "law.json").write_text(json.dumps(content))
         with pytest.raises(CaseError, match="is not a law of this version"):
@@ -293,14 +296,32 @@ def test_points_that_do_not_hold_together_are_refused(law, tmp_path):
 
 def test_a_law_needs_a_point():
     with pytest.raises(ValueError, match="points"):
-        Law.model_validate({"points": []})
+        STORED_LAW.validate_python({"points": []})
 
 
 def test_a_pair_that_always_sticks_is_said_to(law, tmp_path):
-    points = tuple(
-        point.model_copy(update={"restitution": 0.0, "ratio": -0.5}) for point in law().points
-    )
+    points = tuple(replace(point, restitution=0.0, ratio=-0.5) for point in law().points)
     stuck = law(points=points, work_of_adhesion=0.1)
     assert stuck.sticks_everywhere
     assert stuck.curve().begins() is None
     assert stuck.at(0.2).restitution == 0
+
+
+def test_restitution_takes_velocities_of_any_shape(law):
+    found = law()
+    V = np.array([[0.02, 0.3], [1.0, 10.0]])
+    e = found.restitution(V)
+    assert e.shape == (2, 2)
+    assert e.ravel().tolist() == [found.at(v).restitution for v in V.ravel()]
+    assert found.restitution(0.3) == found.at(0.3).restitution
+    with pytest.raises(DomainError, match="nothing is extrapolated"):
+        found.restitution([0.3, 20.0])
+
+
+def test_a_law_shows_only_its_own_names(law):
+    fitted = replace(law(), laws=fitted_laws(law()), fit=compact_fit(law()))
+    for part in (fitted, fitted.first, fitted.points[0], fitted.fit, fitted.laws[0]):
+        names = [name for name in dir(part) if not name.startswith("_")]
+        assert not [name for name in names if name.startswith(("model_", "parse", "schema"))]
+        assert not {"dict", "json", "copy", "construct", "validate"} & set(names)
+    assert {"restitution", "at", "points"} <= set(dir(fitted))

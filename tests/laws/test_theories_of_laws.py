@@ -1,5 +1,7 @@
 """Theories beside a law: its points, the force laws fitted to it, and Brilliantov's fit."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -43,7 +45,7 @@ def test_brilliantov_is_found_again(law):
     e = Brilliantov(0.3).restitution(V)
     exact = law(
         points=tuple(
-            point.model_copy(update={"restitution": float(value), "ratio": float(value) ** 2})
+            replace(point, restitution=float(value), ratio=float(value) ** 2)
             for point, value in zip(law().points, e, strict=True)
         )
     )
@@ -59,11 +61,9 @@ def test_nothing_of_a_law_is_interpolated(points):
 
 def test_what_is_fitted_to_a_law_is_empty_where_the_law_is_not_resolved(law):
     ends = (0, 1, 12)
-    coarse = tuple(
-        point.model_copy(update={"resolved": k not in ends}) for k, point in enumerate(law().points)
-    )
+    coarse = tuple(replace(point, resolved=k not in ends) for k, point in enumerate(law().points))
     found = law(points=coarse, yield_pressure=560e6)
-    found = found.model_copy(update={"laws": fitted_laws(found)})
+    found = replace(found, laws=fitted_laws(found))
     V = found.column("velocity")
     beside = by_name(case_of(), V, found)
     for name in ("constant", "walton-braun", "luding", "eepa", "brilliantov"):
@@ -74,9 +74,7 @@ def test_what_is_fitted_to_a_law_is_empty_where_the_law_is_not_resolved(law):
 
 
 def test_a_law_that_loses_nothing_has_nothing_to_fit(law):
-    lossless = tuple(
-        point.model_copy(update={"restitution": 1.0, "ratio": 1.0}) for point in law().points
-    )
+    lossless = tuple(replace(point, restitution=1.0, ratio=1.0) for point in law().points)
     elastic = law(points=lossless, yield_pressure=None)
     case = case_of(interface=ELASTIC)
     assert list(by_name(case, V, elastic)) == ["hertz", "computed"]
@@ -111,7 +109,7 @@ def test_the_computed_points_state_the_interface_of_their_law(law, p_y, w):
 
 
 def test_nothing_is_fitted_to_what_is_not_resolved(law):
-    coarse = tuple(point.model_copy(update={"resolved": False}) for point in law().points)
+    coarse = tuple(replace(point, resolved=False) for point in law().points)
     found = law(points=coarse)
     assert "brilliantov" not in by_name(case_of(), V, found)
     assert (
@@ -120,23 +118,19 @@ def test_nothing_is_fitted_to_what_is_not_resolved(law):
 
 
 def test_with_a_constant_alone_the_other_fits_are_left_out(law):
-    stuck = tuple(
-        point.model_copy(update={"restitution": 0.0, "ratio": -0.1}) for point in law().points
-    )
+    stuck = tuple(replace(point, restitution=0.0, ratio=-0.1) for point in law().points)
     found = law(points=stuck, work_of_adhesion=0.1)
-    found = found.model_copy(update={"laws": fitted_laws(found)})
+    found = replace(found, laws=fitted_laws(found))
     reasons = room.left_out(case_of(), found)
     assert [name for name in room._FITTED if name not in reasons] == ["constant"]
     assert "e = 0 at every velocity of the law" in reasons["brilliantov"]
-    bare = found.model_copy(update={"laws": ()})
+    bare = replace(found, laws=())
     assert set(room._FITTED) <= set(room.left_out(case_of(), bare))
     assert "constant" not in room.left_out(case_of(), law())
 
 
 def test_a_law_of_elastic_bodies_and_its_unresolved_points_are_told(law):
-    coarse = tuple(
-        point.model_copy(update={"resolved": k > 1}) for k, point in enumerate(law().points)
-    )
+    coarse = tuple(replace(point, resolved=k > 1) for k, point in enumerate(law().points))
     said = by_name(case_of(), V, law(points=coarse, yield_pressure=None))["computed"].holds
     assert said.startswith("at its 13 velocities, 2 of them not resolved by the grid; computed for")
     assert said.endswith("differs from the case: elastic")

@@ -5,6 +5,7 @@ import random
 import re
 import shutil
 import subprocess
+from dataclasses import replace
 
 import pytest
 
@@ -70,17 +71,10 @@ def test_the_packing_has_the_fractions_of_the_sizes(laws):
 
         def given(body):
             number = None if body.wall else types.index(body)
-            return (
-                body
-                if number is None
-                else body.model_copy(update={"number_fraction": fractions[number]})
-            )
+            return body if number is None else replace(body, number_fraction=fractions[number])
 
         types = pair_table(laws).spheres
-        changed = [
-            law.model_copy(update={"first": given(law.first), "second": given(law.second)})
-            for law in laws
-        ]
+        changed = [replace(law, first=given(law.first), second=given(law.second)) for law in laws]
         text = export(changed, "lammps", VELOCITY)["packing.in"]
         return [int(n) for n in re.findall(r"^variable number_\d+ index (\d+)", text, re.MULTILINE)]
 

@@ -1,5 +1,7 @@
 """The figure of a law."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from restitution.laws.compact_fit import compact_fit
@@ -9,12 +11,10 @@ from restitution.plots.static import draw
 
 
 def test_fits_are_drawn_over_the_resolved_velocities_only(law):
-    points = [
-        point.model_copy(update={"resolved": 3 <= k < 12}) for k, point in enumerate(law().points)
-    ]
+    points = [replace(point, resolved=3 <= k < 12) for k, point in enumerate(law().points)]
     found = law(points=tuple(points))
     fits = {"fit": compact_fit(found), "laws": fitted_laws(found)}
-    drawing = draw(law_figure(found.model_copy(update=fits)))
+    drawing = draw(law_figure(replace(found, **fits)))
     lines = [line for line in drawing.axes[0].lines if line.get_linestyle() in ("-", "--")]
     assert len(lines) > 5
     V = found.column("velocity")

@@ -49,9 +49,13 @@ def findings(found: Fit) -> list[str]:
     ]
 
 
-def interval_in_words(found: Fit, k: int) -> str:
-    """Format the 95 % interval of a parameter in the unit of the case file."""
-    half, x, parameter = found.uncertainty.halves[k], float(found.x[k]), found.parameters[k]
+def interval_in_words(found: Fit, k: int, *, model: bool = False) -> str:
+    """Format the 95 % interval of a parameter in the unit of the case file.
+
+    With `model`, the interval includes the error of the model.
+    """
+    uncertainty, x, parameter = found.uncertainty, float(found.x[k]), found.parameters[k]
+    half = (uncertainty.combined_halves if model else uncertainty.halves)[k]
     if math.isinf(half):
         return "unbounded"
     return f"{parameter.text(math.exp(x - half))} to {parameter.text(math.exp(x + half))}"

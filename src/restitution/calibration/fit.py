@@ -18,10 +18,11 @@ from restitution.calibration.least_squares import (
     search_widely,
     searches,
 )
-from restitution.calibration.measured import Measured
+from restitution.calibration.measured import ASSUMED, Measured
 from restitution.calibration.model import Array, CaseModel
 from restitution.calibration.parameters import Parameter, free_parameters
-from restitution.calibration.uncertainty import Deviations, Uncertainty
+from restitution.calibration.uncertainty import MODEL_SHARES, Deviations, Uncertainty
+from restitution.case.case import Case
 from restitution.case.case_file import parse_case, parse_toml
 from restitution.display import counted
 from restitution.errors import CaseError, RestitutionError
@@ -30,8 +31,6 @@ from restitution.runs.refinement import settled
 from restitution.sweeps.sweep import put
 
 _FINE = 60  # number of velocities of the fitted curve
-_EQUAL = 0.02  # initial standard deviation of COR if the table of measurements has none
-
 # Smallest standard deviation of COR that is estimated from residuals. The interpolation between
 # velocities is not more accurate than this value.
 _LEAST_NOISE = 1e-4
@@ -124,7 +123,7 @@ def fit(
         put(content, "grid.refine", settled(case, folder).grid.factor)
     model.require_possible(start)
     given = measured.deviation
-    data = Data(V, measured.restitution, np.full(V.size, _EQUAL) if given is None else given)
+    data = Data(V, measured.restitution, np.full(V.size, ASSUMED) if given is None else given)
     minima = search_widely(model, data)
     # The minima were found on cells twice as large as those of the case. Now search on the grid of
     # the case. Start from the best minimum at which the case can be solved on this grid.
@@ -169,7 +168,15 @@ def _deviations(model: CaseModel, x: Array, velocity: Array) -> Deviations:
         surfaces=each - own,
         grid=grid,
         model=here.error(velocity, "model_error"),
+        model_share=_model_share(model.case(x)),
     )
+
+
+def _model_share(case: Case) -> float:
+    """The field `Deviations.model_share` of `case`; 1 if adhesion contributes to the error."""
+    if case.interface.adhesive_energy > 0:
+        return 1.0
+    return MODEL_SHARES[case.yielding().plasticity]
 
 
 def _noise(measured: Measured, fitted: Array, parameters: int) -> Array:

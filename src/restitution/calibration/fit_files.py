@@ -94,8 +94,9 @@ def _summary(found: Fit, text: str) -> dict[str, Any]:
         "intervals_include": _included(found),
         "measured_values_are": f"means over {found.model.surfaces} places of impact or more; "
         "std_if_one_place assumes one place",
-        "intervals_do_not_include": "the model of plasticity (by_model_error), values that the "
-        "case gives, rate effects, elastic waves",
+        "low_and_high_include": "intervals_include, and the model of plasticity "
+        f"({found.deviations.model_share:g} times by_model_error)",
+        "intervals_do_not_include": "values that the case gives, rate effects, elastic waves",
         "largest_model_error": float(found.deviations.model.max()),
         "searches": [
             {
@@ -113,16 +114,19 @@ def _summary(found: Fit, text: str) -> dict[str, Any]:
 
 def _parameter(found: Fit, k: int) -> dict[str, Any]:
     parameter, factor = found.parameters[k], found.factors[k]
-    half, value = found.uncertainty.halves[k], parameter.value * factor
-    bounded = math.isfinite(half)
+    uncertainty, value = found.uncertainty, parameter.value * factor
+    low, high = _interval(value, uncertainty.combined_halves[k])
+    data_low, data_high = _interval(value, uncertainty.halves[k])
     return {
         "key": parameter.key,
         "value": value,
         "unit": parameter.unit,
         "written": parameter.text(factor),
         "first_guess": parameter.written,
-        "low": value * math.exp(-half) if bounded else None,
-        "high": value * math.exp(half) if bounded else None,
+        "low": low,
+        "high": high,
+        "low_from_data": data_low,
+        "high_from_data": data_high,
         "identifiable": identifiable(found, k),
         "relative_std": {
             part: _known(found.uncertainty.deviation(part)[k]) for part in found.uncertainty.parts
@@ -130,6 +134,13 @@ def _parameter(found: Fit, k: int) -> dict[str, Any]:
         "by_model_error": _known(found.uncertainty.by_model[k]),
         "std_if_one_place": _known(found.uncertainty.by_one_place[k]),
     }
+
+
+def _interval(value: float, half: float) -> tuple[float | None, float | None]:
+    """The ends of an interval; None if it is unbounded. `half` is that of the logarithm."""
+    if not math.isfinite(half):
+        return None, None
+    return value * math.exp(-half), value * math.exp(half)
 
 
 def _known(value: float) -> float | None:

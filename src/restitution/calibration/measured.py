@@ -23,11 +23,16 @@ DEVIATIONS = ("restitution_std", "restitution_error")
 # Velocities have the same range as in a case file.
 _ACCEPTED: dict[str, tuple[Callable[[float], bool], str]] = {
     VELOCITY: (lambda V: 1e-9 <= V <= 1e4, "is not a velocity of 1e-09 to 10000 m/s"),
-    RESTITUTION: (lambda e: 0 <= e <= 1, "is outside 0 to 1"),
+    RESTITUTION: (lambda e: e >= 0, "is negative"),
     **dict.fromkeys(
         DEVIATIONS, (lambda std: 0 < std < 1, "is not a standard deviation between 0 and 1")
     ),
 }
+# A measured COR may exceed 1 by this number of standard deviations, because cutting it at 1 would
+# bias the fit.
+_ABOVE = 3
+ASSUMED = 0.02
+"""Standard deviation of COR that is assumed at first if the table has none."""
 _LARGEST = 2**24  # largest size of a file (bytes)
 
 
@@ -35,6 +40,7 @@ _LARGEST = 2**24  # largest size of a file (bytes)
 class Measured:
     """Measured COR at impact velocities (m/s, increasing), shape (points,).
 
+    COR may exceed 1 by the noise of the measurement.
     `deviation` contains the standard deviations of `restitution`, or None if the file has no such
     column.
     """
@@ -56,7 +62,9 @@ def read_measured(path: Path) -> Measured:
     columns = [VELOCITY, RESTITUTION, *deviations[:1]]
     found = []
     for line, row in rows:
-        found.append([_number(path, line, row, column) for column in columns])
+        values = [_number(path, line, row, column) for column in columns]
+        _check_restitution(path, line, row, values)
+        found.append(values)
     V, e, *std = np.array(sorted(found)).T
     return Measured(V, e, std[0] if std else None)
 
@@ -111,6 +119,22 @@ def _number(path: Path, line: int, row: dict[str, str], column: str) -> float:
     if not accepts(value):
         raise _wrong(path, line, column, row, wrong)
     return value
+
+
+def _check_restitution(path: Path, line: int, row: dict[str, str], values: list[float]) -> None:
+    """Raise `CaseError` if COR is further above 1 than its standard deviation explains."""
+    _, e, *given = values
+    std = given[0] if given else ASSUMED
+    if e <= 1 + _ABOVE * std:
+        return
+    limit = f"is above {1 + _ABOVE * std:.4g}, which is 1 and {_ABOVE} standard deviations of "
+    how = (
+        f"{std:g}; correct the value or its standard deviation"
+        if given
+        else f"{std:g}, assumed because the column {DEVIATIONS[0]} is missing; add this column, or "
+        "correct the value"
+    )
+    raise _wrong(path, line, RESTITUTION, row, limit + how)
 
 
 def _wrong(path: Path, line: int, column: str, row: dict[str, str], why: str) -> CaseError:

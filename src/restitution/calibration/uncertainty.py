@@ -16,6 +16,11 @@ measured mean contribute S/n each. If all impacts hit the same place, the measur
 S, so the second term is (1 + 1/n) S instead. In the third term, Δ_grid is the deviation of COR due
 to the grid.
 
+The model error of COR is not random. If COR deviated by its full model error M at every velocity,
+the logarithms would change by P M. Fits to the finite-element curves of the validation change by
+less: 95 % of them by at most the share `MODEL_SHARES` of P M (docs/studies/fit_model_error.py). The
+combined interval of a parameter adds this part to the interval of the data in quadrature.
+
 Intervals are computed with Student's t distribution, with the degrees of freedom according to Welch
 and Satterthwaite (Satterthwaite 1946).
 """
@@ -32,6 +37,8 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 CONFIDENCE = 0.95
+MODEL_SHARES = {"equilibrium": 0.9, "truncated": 0.8, "expanding-cavity": 0.45}
+"""For each model of plasticity: see the top of this file."""
 # Singular values of the scaled Jacobian A below _LEAST are set to _LEAST. The data do not determine
 # the corresponding combinations of parameters. The standard deviation of the logarithm of such a
 # combination is then at least 1/_LEAST = 1000, so changes by a factor of e^1000 remain possible.
@@ -49,7 +56,8 @@ class Deviations:
     `freedom` degrees of freedom. `surfaces` is the COR of each surface minus the mean over the
     surfaces, shape (surfaces, points). `grid` is the change of COR if the cells are twice as
     large as those of the case. It is None if the case cannot be solved on these cells. `model` is
-    the model error of COR (`contact.model_error`), which does not contribute to the intervals.
+    the model error of COR (`contact.model_error`), and `model_share` the share of its effect that
+    the combined intervals include.
     """
 
     random: Array
@@ -57,6 +65,7 @@ class Deviations:
     surfaces: Array
     grid: Array | None
     model: Array
+    model_share: float = 1.0
 
     @property
     def by_surface(self) -> Array:
@@ -173,6 +182,13 @@ class Uncertainty:
     def halves(self) -> list[float]:
         """Half-width of the 95 % interval of the logarithm of each parameter."""
         return [self.half(axis) for axis in np.eye(self.scaled.shape[1])]
+
+    @cached_property
+    def combined_halves(self) -> list[float]:
+        """Half-width of the 95 % interval that includes the error of the model, by parameter."""
+        by_model = self.deviations.model_share * self.by_model
+        halves = np.hypot(self.halves, by_model).tolist()
+        return [half if half < _UNBOUNDED else math.inf for half in halves]
 
     def deviation(self, part: str) -> Array:
         """Standard deviation of the logarithm of each parameter due to one source of error.

@@ -54,6 +54,10 @@ def read_text(path: Path) -> str:
         raise CaseError(f"{path}: cannot be read ({error.strerror}); give a case file") from None
 
 
+# For each other kind of input file: a key that only this kind has, the kind, and its verb.
+_OTHER_FILES = (("materials", "the file of a mixture", "mixture"),)
+
+
 @contextmanager
 def naming(path: Path) -> Iterator[None]:
     """Put the name of the case file in front of error messages."""
@@ -73,11 +77,19 @@ def parse_toml(text: str) -> dict[str, Any]:
     except tomllib.TOMLDecodeError as error:
         twice = re.match(r"Cannot declare \('(\w+)',\) twice", str(error))
         hint = f"; for several tables, begin each of them with [[{twice[1]}]]" if twice else ""
+        if _is_table_of_numbers(text):
+            hint = "; this is a table of values, not a case file: give the case file"
         raise CaseError(f"not valid TOML: {error}{hint}") from None
     except ValueError:  # Python refuses to read an integer of more than 4300 digits
         raise CaseError("contains a number with thousands of digits; correct it") from None
     _check_depth(content)
     return content
+
+
+def _is_table_of_numbers(text: str) -> bool:
+    """Whether the first line of `text` has cells, as in a CSV file, but no key of TOML."""
+    first = text.lstrip("\ufeff \t\r\n").partition("\n")[0]
+    return "=" not in first and "[" not in first and any(sign in first for sign in ",;\t")
 
 
 def _too_deep() -> CaseError:
@@ -105,6 +117,9 @@ def _check_depth(content: dict[str, Any]) -> None:
 def parse_case(text: str) -> Case:
     """Check the text of a case file. Raises a `CaseError` that names the key."""
     content = parse_toml(text)
+    for key, kind, verb in _OTHER_FILES:
+        if key in content and "first" not in content:
+            raise CaseError(f"{key}: this is {kind}, not a case; use `restitution {verb}`")
     try:
         return Case.model_validate(content)
     except ValidationError as error:

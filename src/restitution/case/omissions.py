@@ -1,8 +1,6 @@
-"""Warnings about keys that a case omits; they state which values are used instead."""
+"""Keys that a case omits: warnings if the default may be wrong, information if it is not."""
 
 from __future__ import annotations
-
-import math
 
 from restitution.case.case import Case
 from restitution.case.materials import adhesive
@@ -19,23 +17,19 @@ _MATTERS = 8.5
 
 def omissions(case: Case) -> list[str]:
     """Make a warning for each omitted key whose default may be wrong for the case."""
-    return list(filter(None, (_default_yield(case), _no_adhesion(case), _no_shortest_wave(case))))
+    return list(filter(None, (_no_adhesion(case), _no_shortest_wave(case))))
 
 
-def _default_yield(case: Case) -> str | None:
-    interface = case.interface
-    if interface.yield_pressure is not None or interface.yield_strength is not None:
-        return None
-    yielding = case.yielding()
-    how = (
-        f"according to {yielding.source}"
-        if math.isfinite(yielding.yield_strength)
-        else f"at the pressure {1e-6 * yielding.yield_pressure:.4g} MPa ({yielding.source})"
-    )
+def default_yield(source: str) -> str:
+    """State where a yield pressure that the case leaves out comes from; empty if it is given.
+
+    `source` is that of `Case.yielding`, also stored as `model.yield_pressure` of a summary.
+    """
+    if source in ("given", "elastic"):
+        return ""
     return (
-        f"interface.yield_strength is left out: the contact yields {how}; give "
-        'yield_strength or yield_pressure, or yield_pressure = "elastic" for bodies that do not '
-        "yield"
+        f"The contact yields according to {source}; interface.yield_strength or "
+        "interface.yield_pressure sets another value."
     )
 
 

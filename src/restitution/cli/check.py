@@ -54,6 +54,7 @@ def check(
     """Validate CASE and print derived quantities, such as the yield velocity; solve nothing."""
     from restitution.case.case_file import naming
     from restitution.case.derived import deepest_indentation
+    from restitution.case.omissions import default_yield
     from restitution.cli.console import command, errors, print_numbers, say, say_next, warn
     from restitution.runs.messages import (
         failure_at_edge,
@@ -70,8 +71,8 @@ def check(
         contact = read.contact(case.parent)
         table = _table(read, contact, auto=given.grid.refine == "auto")
     print_numbers(table)
-    if (from_where := read.yielding().source) not in ("given", "elastic"):
-        say(f"The yield pressure of the contact comes from {from_where}.")
+    if information := default_yield(read.yielding().source):
+        say(information)
     deepest = deepest_indentation(read)
     require_possible(contact, deepest)
     with errors.status("checking the surface"):

@@ -44,7 +44,7 @@ def export(
     from restitution.cli.console import say, say_written
     from restitution.cli.warn_once import warn_once
     from restitution.dem.export import export as exported
-    from restitution.dem.export import limit, write_export
+    from restitution.dem.export import limit, unset, write_export
     from restitution.laws.law import velocity_of
     from restitution.laws.law_files import read_laws
 
@@ -65,6 +65,6 @@ def export(
         for law in read:
             found = law.at(at)
             say(f"{law.pair}: COR {found.restitution:.4f} ± {found.error:.2g} at {at:g} m/s")
-    if note := limit(to.value):
+    for note in filter(None, (*unset(read, to.value), limit(to.value))):
         say(note)
     say_written(out, [path.name for path in written])

@@ -4,7 +4,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.table import Column, Table
 
 from restitution.cli.parameters import FigureFormat, Figures, OutFolder
 
@@ -49,7 +48,6 @@ def fit(
     from restitution.calibration.measured import read_measured
     from restitution.case.case_file import naming, read_case
     from restitution.cli.console import (
-        answers,
         command,
         hint_at_kernels,
         say,
@@ -81,30 +79,40 @@ def fit(
         *write_fit(found, text, out),
         write_figure(out / "fit", fit_figure(found), figures.value),
     ]
-    answers.print(_table(found))
+    for k in range(found.x.size):
+        say(_parameter(found, k))
     rms = float((found.residuals**2).mean() ** 0.5)
     say(
         f"{counted(found.measured.velocity.size, 'point')}, rms residual of COR {rms:.2g}, "
         f"{counted(found.model.evaluations, 'curve')} computed"
     )
+    if table.deviation is None:
+        noise = (float((found.residuals**2).sum()) / found.freedom) ** 0.5
+        say(
+            "MEASURED has no column restitution_std: every point is assumed to have the standard "
+            f"deviation {noise:.2g}, estimated from the residuals"
+        )
+    if above := int((table.restitution > 1).sum()):
+        say(f"{above} of the measured COR are above 1; they are not cut, which would bias the fit")
     for sentence in findings(found):
         warn(sentence)
     say_written(out, [path.name for path in written])
     say_next(command("run", out / "case.toml", "-o", "RESULTS"))
 
 
-def _table(found: "Fit") -> Table:
+def _parameter(found: "Fit", k: int) -> str:
+    """The value of a parameter with its intervals: with the model first, then of the data alone."""
     from restitution.calibration.findings import identifiable, interval_in_words
-    from restitution.cli.console import table_of_numbers
 
-    heads = ("fitted", "95 % interval", "± model", "± one place")
-    table = table_of_numbers(Column("parameter", overflow="fold"), *heads)
-    by = found.uncertainty
-    for k, parameter in enumerate(found.parameters):
-        table.add_row(
-            parameter.key,
-            parameter.text(found.factors[k]),
-            interval_in_words(found, k) if identifiable(found, k) else "not identifiable",
-            *(f"{100 * each[k]:.2g} %" for each in (by.by_model, by.by_one_place)),
-        )
-    return table
+    parameter, uncertainty = found.parameters[k], found.uncertainty
+    value = f"{parameter.key} = {parameter.text(found.factors[k])}"
+    if not identifiable(found, k):
+        return f"{value}, not identifiable"
+    place = f"{100 * uncertainty.by_one_place[k]:.2g} %"
+    lines = [
+        f"{value}, 95 % interval {interval_in_words(found, k, model=True)} (data and model)",
+        f"  of the data alone: {interval_in_words(found, k)}",
+    ]
+    if uncertainty.by_one_place[k] > 0:
+        lines.append(f"  if all impacts hit one place: ± {place}, one standard deviation")
+    return "\n".join(lines)

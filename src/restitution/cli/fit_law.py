@@ -36,6 +36,7 @@ def fit_law(
     from restitution.cli.progress import spinner
 
     with spinner("reading the results") as show:
+        from restitution.laws.force_law_fits import too_few_points
         from restitution.laws.from_results import law_of
         from restitution.laws.law_files import write_law
         from restitution.plots.law import law_figure
@@ -45,7 +46,7 @@ def fit_law(
         written = write_law(found, out)
         show("drawing the figure")
         written.append(write_figure(out / "law", law_figure(found), figures.value))
-    for warning in found.warnings:
+    for warning in filter(None, (*found.warnings, too_few_points(found))):
         warn(warning)
     say(
         f"{found.pair}: {len(found.points)} velocities, {found.lowest:.4g} to "
@@ -98,5 +99,7 @@ def _table(laws: "tuple[FittedLaw, ...]") -> Table:
     )
     for each in laws:
         parameters = ", ".join(f"{name} {value:.4g}" for name, value in each.parameters.items())
+        if each.pull_off_misfit is not None:
+            parameters += f"; pull-off force within {100 * each.pull_off_misfit:.2g} %"
         table.add_row(each.name, parameters, f"{each.rms:.3f}", f"{each.worst:.3f}")
     return table

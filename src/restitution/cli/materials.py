@@ -21,6 +21,9 @@ _QUANTITIES = {
 }
 
 
+_WIDEST = 1000  # width (characters) in which every table fits
+
+
 def _names(incomplete: str) -> list[str]:
     """List the keys of the library that begin with `incomplete`, for completion in a shell."""
     from restitution.case.materials import materials
@@ -56,13 +59,17 @@ def materials(
         return
     from restitution.case.materials import material
     from restitution.case.materials import materials as library
-    from restitution.cli.console import answers, command, say, say_next
+    from restitution.cli.console import answers, command, print_numbers, say, say_next
 
     found = library() if name is None else {(known := material(name)).key: known}
     if json:
         answers.print_json(data={key: each.model_dump() for key, each in found.items()})
     elif name is None:
-        answers.print(_list(found))
+        table = _list(found)
+        natural = answers.measure(table, options=answers.options.update(width=_WIDEST)).maximum
+        if natural > answers.width:  # each material fits into one line without its long name
+            table = _list(found, names=False)
+        print_numbers(table)
         say_next(command("materials", "NAME") + " (spread and sources)")
     else:
         say(f"{known.key}: {known.name}")
@@ -102,17 +109,17 @@ def _show_pairs(name: str | None, json: bool) -> None:
     )
 
 
-def _list(found: dict[str, Material]) -> Table:
+def _list(found: dict[str, Material], *, names: bool = True) -> Table:
     from restitution.cli.console import table_of_numbers
 
     listed = {key: row for key, row in _QUANTITIES.items() if key != "surface_energy"}
     heads = [f"{symbol} ({unit})" if unit else symbol for _, symbol, _, unit in listed.values()]
-    name, material = Column("name", no_wrap=True), Column("material", overflow="fold")
-    table = table_of_numbers(name, *heads, material)
+    material = [Column("material", no_wrap=True)] if names else []
+    table = table_of_numbers(Column("name", no_wrap=True), *heads, *material)
     for key, each in found.items():
         known = ((getattr(each, name), scale) for name, (_, _, scale, _) in listed.items())
         cells = ("-" if of is None else f"{scale * of.value:.5g}" for of, scale in known)
-        table.add_row(key, *cells, each.name)
+        table.add_row(key, *cells, *([each.name] if names else []))
     return table
 
 

@@ -43,6 +43,7 @@ def run_with_progress(
     fails, the depths computed so far are stored and drawn.
     """
     from restitution.case.case_file import naming, read_case
+    from restitution.case.omissions import default_yield
     from restitution.cli.console import (
         answers,
         command,
@@ -68,6 +69,8 @@ def run_with_progress(
     context.with_resource(locked(out))
     folder = ResultsFolder(out)
     say(f"Results go to {out}", errors)
+    if information := default_yield(read.yielding().source):
+        say(information, errors)
     hint_at_kernels()
     depths = len(read.depths())
     try:

@@ -113,7 +113,18 @@ def largest_difference(state: State, restitution: float) -> float:
     """
     contact = state.contact
     if not contact.grows:
-        return float(np.interp(restitution, *_CONSTANT[str(contact.plasticity)]))
+        return relative_model_error(str(contact.plasticity), restitution, 0.0)
     steepness = contact.pair.contact_modulus * contact.slope / contact.yield_strength
+    return relative_model_error("expanding-cavity", restitution, steepness)
+
+
+def relative_model_error(plasticity: str, restitution: float, steepness: float) -> float:
+    """Largest relative difference of COR between a model of plasticity and finite elements.
+
+    `restitution` is the COR that plasticity alone would give, and `steepness` is E* S/Y of the
+    asperities (rms slope S), which only the errors of `expanding-cavity` depend on.
+    """
+    if plasticity in _CONSTANT:
+        return float(np.interp(restitution, *_CONSTANT[plasticity]))
     error = np.interp(steepness, _STEEPNESS, _GROWING) * np.interp(restitution, *_NEAR_ONE)
     return float(error)

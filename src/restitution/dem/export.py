@@ -8,6 +8,7 @@ from importlib import import_module
 from pathlib import Path
 
 from restitution.dem.adhesion import pull_off_force
+from restitution.dem.export_common import unset_pairs
 from restitution.dem.pair_table import PairTable, pair_table
 from restitution.errors import CaseError, OutputError
 from restitution.laws.law import Law
@@ -60,6 +61,14 @@ def limit(code: str) -> str:
     if code == "csv":
         return ""
     return str(getattr(import_module(f"restitution.dem.codes.{code}"), "NOTE", ""))
+
+
+def unset(laws: Sequence[Law], code: str) -> list[str]:
+    """State which pairs of spheres have no law, and how the user gives `code` their e."""
+    if code == "csv":
+        return []
+    module = import_module(f"restitution.dem.codes.{code}")
+    return unset_pairs(pair_table(laws), module.CODE, getattr(module, "SETTING", ""))
 
 
 def write_export(texts: dict[str, str], out: Path) -> list[Path]:

@@ -1,9 +1,9 @@
 """What all exports share: the pairs at one velocity, comments, and templates.
 
 DEM codes use one coefficient of restitution e for each pair, so an export is valid at one impact
-velocity. The comments in an export give the origin of e, its error, and its values at other
-velocities. Comments are plain ASCII without quotes, braces or line-continuation characters, so that
-a name or title given by the user cannot end a comment.
+velocity. The notes beside an export (`notes`) give the origin of e, its error, and its values at
+other velocities. Notes and comments are plain ASCII without quotes, braces or line-continuation
+characters, so that a name or title given by the user cannot end a comment.
 """
 
 from __future__ import annotations
@@ -12,19 +12,19 @@ import re
 import textwrap
 import unicodedata
 from collections.abc import Iterable
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache, cached_property
 from importlib.metadata import PackageNotFoundError, version
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from restitution.dem.adhesion import adhesion_lines
+from restitution.dem.notes import about, grouped_warnings
+from restitution.dem.pair import Pair, contact_time
 from restitution.dem.pair_table import PairTable
-from restitution.errors import CaseError, DomainError, one_line
-from restitution.laws.law import FittedLaw, Law, Particle
+from restitution.display import quantity
+from restitution.errors import CaseError, one_line
+from restitution.laws.law import Law, Particle
 
-FRICTION = 0.5  # coefficient of friction of pairs whose case gives none; users should replace it
 STEPS = 5000  # number of time steps in a contact
 
 _WIDTH = 98
@@ -35,71 +35,14 @@ _PLAIN = str.maketrans("–—−‐‑’‘“”·×≈→µ", "-----''''.x~>
 
 
 @dataclass(frozen=True)
-class Pair:
-    """A pair of particle types `i` ≤ `j` in an export.
-
-    `restitution` is e at `velocity` (m/s), which is the impact velocity of the export.
-    """
-
-    i: int
-    j: int
-    first: Particle
-    second: Particle
-    law: Law
-    velocity: float
-    restitution: float
-
-    @property
-    def wall(self) -> bool:
-        """Whether the second body is a wall."""
-        return self.second.wall
-
-    @property
-    def friction(self) -> float:
-        """The coefficient of friction of the case, or the placeholder `FRICTION`."""
-        return FRICTION if self.law.friction is None else self.law.friction
-
-    @property
-    def contact_time(self) -> float:
-        """Contact time (s) of an elastic impact at the velocity of the export."""
-        return float(contact_time(self.law) * self.velocity**-0.2)
-
-    @property
-    def shear_modulus(self) -> float:
-        """Mindlin's effective shear modulus G* (Pa): 1/G* = Σ 2 (2 − ν)(1 + ν)/E of both bodies."""
-        bodies = self.first, self.second
-        return 1 / sum(
-            2 * (2 - b.poissons_ratio) * (1 + b.poissons_ratio) / b.youngs_modulus for b in bodies
-        )
-
-    @property
-    def mindlin_stiffness(self) -> float:
-        """Mindlin's tangential stiffness divided by the contact radius: 8 G* (Pa)."""
-        return 8 * self.shear_modulus
-
-    @property
-    def twin(self) -> tuple[float, float]:
-        """E (Pa) and ν of a material that, used for both bodies, gives the E* and G* of this pair.
-
-        E and ν follow from E* = E/(2(1 − ν²)) and G* = E/(4(2 − ν)(1 + ν)). ν lies between the
-        Poisson's ratios of the two materials of the pair.
-        """
-        k = self.shear_modulus / self.law.contact_modulus
-        nu = min(max((1 - 4 * k) / (1 - 2 * k), 0.0), 0.5)
-        return 2 * (1 - nu**2) * self.law.contact_modulus, nu
-
-    def fitted(self, name: str) -> FittedLaw | None:
-        """Return the force law `name` that was fitted to the law of the pair, or None."""
-        return next((fit for fit in self.law.laws if fit.name == name), None)
-
-
-@dataclass(frozen=True)
 class Export:
     """An export of `table` to `code`.
 
     `velocity` (m/s) is the impact velocity at which the exported e of each pair holds. `lowest`
     is the smallest e that `code` reproduces. `ends` describes the condition at which `code` ends a
-    contact. `constant` says whether e in `code` is the same at every velocity.
+    contact. `constant` says whether e in `code` is the same at every velocity. `setting` tells the
+    user how to set e of pairs of spheres if all laws are those of walls; it is empty if `code` does
+    not need them.
     """
 
     table: PairTable
@@ -108,6 +51,7 @@ class Export:
     lowest: float
     ends: str
     constant: bool = True
+    setting: str = ""
 
     @cached_property
     def pairs(self) -> list[Pair]:
@@ -121,65 +65,89 @@ class Export:
             e = law.at(self.velocity).restitution
             if e < self.lowest:
                 raise CaseError(
-                    f"{law.pair} {_failure(law, e)} at {self.velocity:.6g} m/s, but the export to "
-                    f"{self.code} requires e of at least {self.lowest:g}; export at a higher "
-                    "velocity, or use an adhesive contact model"
+                    f"{law.pair} {_failure(law, e)} at {self.velocity:.6g} m/s, but the "
+                    f"export to {self.code} requires e of at least {self.lowest:g}; export at a "
+                    "higher velocity, or use an adhesive contact model"
                 )
             found.append(Pair(i, j, bodies[i - 1], bodies[j - 1], law, self.velocity, e))
         return found
 
-    def header(self) -> list[str]:
-        """Write the comment lines at the top of an exported file."""
-        lines = [*self._origin(), "", "Types:"]
-        lines += [f"  {k}: {particle}" for k, particle in enumerate(self.table.particles, 1)]
-        for pair in self.pairs:
-            lines += ["", *_about(pair, self.code)]
-        return wrapped(lines)
+    @property
+    def notes_name(self) -> str:
+        """Name of the file with the origin and the conventions of e."""
+        return f"restitution_{self.code.lower()}.txt"
 
-    def summary(self, fragment: str) -> list[str]:
-        """Write the comment lines at the top of a script that uses the file `fragment`.
-
-        These comments are shorter than those of `header`, but contain all warnings.
-        """
-        lines = [*self._origin(), f"The comments in {fragment} give the origin of e."]
-        for pair in self.pairs:
-            lines += _warnings(pair)
-        return wrapped(lines)
-
-    def render(self, name: str, comments: str, **values: object) -> str:
-        """Fill `comments` and `values` into the template of the file `name`.
-
-        The template is `templates/NAME.j2`. It can also use `table`, `pairs` and `velocity` of the
-        export, and the names and the filters of `_environment`.
-        """
-        template = _environment().get_template(f"{name}.j2")
-        shared = {"table": self.table, "pairs": self.pairs, "velocity": self.velocity}
-        return template.render(shared, comments=comments, **values)
-
-    def _origin(self) -> list[str]:
+    def notes(self) -> dict[str, str]:
+        """The file `notes_name`: types, origin, conventions and warnings; its name and text."""
         reason = (
             f"e is constant in {self.code}, but the e of the pairs depends on the velocity."
             if self.constant
             else f"at other velocities e in {self.code} differs from the e of the pairs."
         )
-        return [
-            f"Coefficients of restitution for {self.code}, written by restitution "
-            f"{program_version()}.",
-            f"They hold at the impact velocity {self.velocity:.6g} m/s only: {reason} Export again "
-            "for another velocity.",
+        lines = [
+            self._title(),
+            f"They hold at this velocity only: {reason} Export again for another velocity.",
             f"End of a contact in {self.code}: {self.ends}",
             "SI units.",
+            "",
+            *self._ending(),
+            "",
+            "Types:",
+            *(f"  {k}: {particle}" for k, particle in enumerate(self.table.particles, 1)),
+            *about(self.pairs, self.code),
         ]
+        return {self.notes_name: "\n".join(wrapped(lines)) + "\n"}
+
+    def render(self, name: str, sign: str = "#", **values: object) -> str:
+        """Fill `values` into the template of the file `name`.
+
+        The template is `templates/NAME.j2`. It can also use `table`, `pairs` and `velocity` of the
+        export, the names and the filters of `_environment`, and two comments, whose lines begin
+        with `sign`: `head`, a few lines for the top of the file, and `ending`, which contains all
+        warnings.
+        """
+        template = _environment().get_template(f"{name}.j2")
+        shared = {"table": self.table, "pairs": self.pairs, "velocity": self.velocity}
+        return template.render(shared, head=self.head(sign), ending=self.ending(sign), **values)
+
+    def head(self, sign: str) -> str:
+        """Write the comment at the top of each exported file."""
+        lines = [self._title(), f"Types, errors, origin and conventions of e: {self.notes_name}"]
+        if self._ending():
+            lines.append("WARNINGS are at the end of this file.")
+        return commented(wrapped(lines), sign)
+
+    def ending(self, sign: str) -> str:
+        """Write the comment at the end of each exported file: all warnings, or nothing."""
+        return commented(wrapped(self._ending()), sign)
+
+    def _title(self) -> str:
+        return (
+            f"Coefficients of restitution for {self.code} at {self.velocity:.6g} m/s, "
+            f"written by restitution {program_version()}"
+        )
+
+    def _ending(self) -> list[str]:
+        return [*self.unset(), *grouped_warnings(self.pairs)]
+
+    def unset(self) -> list[str]:
+        """State which pairs of spheres have no law, and how the user sets their e."""
+        return unset_pairs(self.table, self.code, self.setting)
 
 
-def contact_time(law: Law, radius: float | None = None) -> float:
-    """Contact time (s) of an elastic impact at 1 m/s.
+def unset_pairs(table: PairTable, code: str, setting: str) -> list[str]:
+    """State which pairs of spheres have no law, and how to set their e; [] if `setting` is empty.
 
-    It is 2.87 (m*²/(R* E*² V))^⅕ with V = 1 m/s (Johnson 1985, eq. 11.24). `radius` (m),
-    if given, replaces the R* of the law.
+    `setting` is that of `Export`.
     """
-    R = law.radius if radius is None else radius
-    return float(2.87 * (law.mass**2 / (R * law.contact_modulus**2)) ** 0.2)
+    if not setting or not table.walls_only:
+        return []
+    pairs = [f"{i} {j}" for i, j in table.missing_spheres()]
+    some, names = ("s", "e_1_1, ...") if len(pairs) > 1 else ("", "e_" + pairs[0].replace(" ", "_"))
+    return [
+        f"No law is given for the pair{some} {', '.join(pairs)}, whose spheres can touch, and "
+        f"{code} needs e for every pair: {setting.replace('NAMES', names)}"
+    ]
 
 
 def density_of(particle: Particle) -> float:
@@ -208,13 +176,9 @@ def commented(lines: Iterable[str], sign: str) -> str:
     return "\n".join(f"{sign} {line}".rstrip() for line in lines)
 
 
-def xml_comment(lines: Iterable[str]) -> str:
-    """Make one XML comment of `lines`.
-
-    Double hyphens are separated, because XML forbids them in comments.
-    """
-    safe = (re.sub("-(?=-)", "- ", line).rstrip() for line in lines)
-    return "\n".join(["<!--", *safe, "-->"])
+def _xml_safe(text: str) -> str:
+    """Separate double hyphens, which XML forbids in comments."""
+    return re.sub("-(?=-)", "- ", text)
 
 
 def comment_text(text: str) -> str:
@@ -249,7 +213,12 @@ def _environment() -> Environment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    environment.filters |= {"number": number, "comment_text": comment_text}
+    environment.filters |= {
+        "number": number,
+        "comment_text": comment_text,
+        "quantity": quantity,
+        "xml_safe": _xml_safe,
+    }
     environment.globals |= {
         "time_step": "the elastic contact time t_c = 2.87 (m*^2/(R* E*^2 V))^(1/5), for an "
         "accurate e",
@@ -260,57 +229,14 @@ def _environment() -> Environment:
     return environment
 
 
-def _about(pair: Pair, code: str) -> list[str]:
-    law, velocity = pair.law, pair.velocity
-    p_y = "none (elastic)" if law.yield_pressure is None else f"{law.yield_pressure:.6g} Pa"
-    title = textwrap.shorten(comment_text(law.title), 200, placeholder=" ...")
-    lines = [
-        f"Pair {pair.i} {pair.j}: {pair.first} and {pair.second}",
-        *([f"  title: {title}"] if title else []),
-        f"  e = {pair.restitution:.6g} +/- {law.at(velocity).error:.2g} at {velocity:.6g} m/s"
-        + _elsewhere(law, velocity),
-        f"  R* = {law.radius:.6g} m, E* = {law.contact_modulus:.6g} Pa, m* = {law.mass:.6g} kg",
-        f"  yield pressure p_y: {p_y}; convention: {law.conventions.yield_pressure}",
-        f"  end of contact assumed for e: {law.conventions.end_of_contact}",
-        f"  the error of e includes: {law.conventions.restitution_error}",
-        f"  elastic contact time: {pair.contact_time:.3g} s; a time step of 1/50 "
-        "of this time changes e by at most 1 % in LAMMPS",
-        f"  computed from {law.lowest:.4g} to {law.highest:.4g} m/s; nothing is extrapolated",
-    ]
-    return lines + adhesion_lines(law, velocity, code) + _warnings(pair)
-
-
-def _warnings(pair: Pair) -> list[str]:
-    lines, velocity = [], pair.velocity
-    if not pair.law.at(velocity).resolved:
-        lines.append(
-            f"WARNING: unresolved at {velocity:.6g} m/s (pair {pair.i} {pair.j}): the grid was too "
-            "coarse there, and the error of e may be too small"
-        )
-    if pair.restitution == 0:
-        lines.append(
-            f"WARNING: pair {pair.i} {pair.j} sticks at {velocity:.6g} m/s, but e = 0 does not "
-            "keep the bodies in contact"
-        )
-    return lines + [f"WARNING: pair {pair.i} {pair.j}: {text}" for text in pair.law.warnings]
-
-
-def _elsewhere(law: Law, velocity: float) -> str:
-    """State e at half and at twice `velocity` (m/s), if the law includes these velocities."""
-    said = []
-    for V in (velocity / 2, velocity * 2):
-        with suppress(DomainError):
-            said.append(f"{law.at(V).restitution:.4g} at {V:.6g} m/s")
-    return f" (but {', '.join(said)})" if said else ""
-
-
 def _failure(law: Law, e: float) -> str:
     if e > 0:
         return f"has e = {e:.3g}"
     if law.sticks_everywhere:
         return "sticks (e = 0) at every computed velocity, so also"
-    begins = law.sticks_below
-    return "sticks (e = 0)" + ("" if begins is None else f" below {begins:.4g} m/s, so also")
+    if law.sticks_below is None:
+        return "sticks (e = 0)"
+    return f"sticks (e = 0) below {law.sticks_below:.4g} m/s, so also"
 
 
 def wrapped(lines: Iterable[str]) -> list[str]:

@@ -13,7 +13,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from restitution.dem.export_common import FRICTION, Pair, commented, wrapped
+from restitution.dem.export_common import commented, wrapped
+from restitution.dem.pair import FRICTION, Pair
 
 STIFFNESS_SHARE = 0.8  # factor on Mindlin's tangential stiffness; see the top of this file
 

@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from restitution.dem.export_common import Export, commented
+from restitution.dem.export_common import Export
 from restitution.laws.law import Law
 
 SCRIPT = "match_velocity.py"
@@ -26,7 +26,6 @@ def matching_script(export: Export, command: str, fragment: str, matched: str) -
     """
     return export.render(
         SCRIPT,
-        commented(export.summary(fragment), "#"),
         code=export.code,
         command=command,
         fragment=fragment,

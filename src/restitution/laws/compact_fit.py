@@ -18,13 +18,15 @@ is the lowest degree with a small error: below 0.001, or at most 1.1 times the s
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
 from restitution.laws.law import Array, CompactFit, Law
 
 _HIGHEST_DEGREE = 8
-_FEWEST = 4  # smallest number of points for a fit
+FEWEST = 4
+"""Smallest number of points for a fit."""
 _NO_LOSS = 1e-3  # a point counts as lossless if 1 − e² is below this value
 # The fit uses the lowest degree whose error in e is at most `_GOOD`, or at most `_SIMPLER` times
 # the smallest error of all degrees.
@@ -46,7 +48,7 @@ def compact_fit(law: Law) -> CompactFit | None:
     sticks = law.sticks_below
     begin = first if sticks is None else max(int(np.searchsorted(V, sticks)) - 1, 0)
     v, e2 = V[begin:], ratio[begin:]
-    if v.size < _FEWEST:
+    if v.size < FEWEST:
         return None
     centre = math.sqrt(v[0] * v[-1])
     width = 0.5 * math.log(v[-1] / v[0])
@@ -69,7 +71,7 @@ def compact_fit(law: Law) -> CompactFit | None:
         between=_left_out(basis, e2),
     )
     worst = np.abs(fit.restitution(V) - law.column("restitution", resolved=True)).max()
-    return fit.model_copy(update={"worst": float(worst), "between": max(fit.between, float(worst))})
+    return replace(fit, worst=float(worst), between=max(fit.between, float(worst)))
 
 
 def _best(v: Array, L: Array, e2: Array, adhesive: bool) -> tuple[int, bool]:

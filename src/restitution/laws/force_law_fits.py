@@ -2,26 +2,34 @@
 
 The fits use the resolved points, which are the impact velocities at which the grid resolves the
 contact. The force laws are fitted to COR by least squares, except `thornton-ning-force`, which is
-fitted to the maximum forces. COR does not determine the loading stiffness of spring models. This
-stiffness is chosen such that the model and the computation have the same geometric mean of the
-maximum forces. The duration and depth of contacts then agree on average, too. The parameters of a
-fitted law are stored together with its COR at the points.
+fitted to the maximum forces. Models with adhesion (`luding`, `eepa`) are also fitted to the pull-
+off forces. COR does not determine the loading stiffness of spring models. This stiffness is chosen
+such that the model and the computation have the same geometric mean of the maximum forces. The
+duration and depth of contacts then agree on average, too. The parameters of a fitted law are stored
+together with its COR at the points.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import partial
-from itertools import product
-from operator import attrgetter
+from typing import Any
 
 import numpy as np
 
+from restitution.laws.compact_fit import FEWEST
+from restitution.laws.fitting import (
+    Parameters,
+    fit_restitution,
+    judged,
+    least_squares_from,
+    seen,
+    stiffness,
+)
 from restitution.laws.law import LOSS, Array, FittedLaw, Law
-from restitution.theory import EEPA, JKR, MDR, ImpactLaw, Luding, ThorntonNing, WaltonBraun
-
-Parameters = dict[str, float]
+from restitution.theory import EEPA, JKR, MDR, Luding, ThorntonNing, WaltonBraun
 
 NAMES = (
     "constant",
@@ -36,17 +44,14 @@ NAMES = (
 Begin = Callable[[str, int, int], None]
 """Called before each fit: name of the force law, number of the fit (from 1), number of fits."""
 
-_MOST = 1e6  # largest ratio of unloading to loading stiffness
-# Possible starting points of the searches. Only the best _SEARCHES of these points are used. If the
-# fit has one parameter, the points vary this parameter (_SHIFTS); otherwise they vary the first two
-# (_FEWER_SHIFTS). The values are natural logarithms of the parameter divided by its first guess.
-_SHIFTS = tuple(np.linspace(-7.0, 7.0, 71))
-_FEWER_SHIFTS = (-4.5, -3.0, -1.5, 0.0, 1.5, 3.0), (-4.0, -2.0, 0.0, 1.0, 2.0)
-_SEARCHES = 3, 15  # with one parameter and with several parameters
 # COR of mdr jumps at the velocity of first yield. In LAMMPS this velocity differs slightly from
 # that of `theory.MDR`. Each point is therefore compared with COR of mdr at three velocities: that
 # of the point, and those smaller and larger by this fraction.
 _JUMP = 0.02
+# In the fits of adhesive models, a relative difference of the pull-off force counts as much as this
+# multiple of it in e: 10 % of the force as 0.01 of e.
+_PULL_OFF = 0.1
+_ZERO = 1e-9  # adhesive parameters below this share of their scale are 0
 _AT_FORCE_ZERO = "separation, where the force is back to zero"
 
 
@@ -56,7 +61,7 @@ def fitted_laws(law: Law, begin: Begin | None = None) -> tuple[FittedLaw, ...]:
     The fits use only the points that the grid resolves. The result is empty if there are no such
     points, or if COR is 1 at all of them.
     """
-    if _seen(law, "restitution").min(initial=1.0) > 1 - LOSS:
+    if seen(law, "restitution").min(initial=1.0) > 1 - LOSS:
         return ()
     fits, found = _all(law), []
     for number, name in enumerate(NAMES, 1):
@@ -68,9 +73,21 @@ def fitted_laws(law: Law, begin: Begin | None = None) -> tuple[FittedLaw, ...]:
     return tuple(found)
 
 
+def too_few_points(law: Law) -> str:
+    """Warn if force laws are fitted to fewer points than a compact fit needs; "" otherwise."""
+    count = seen(law, "velocity").size
+    if not law.laws or count >= FEWEST:
+        return ""
+    return (
+        f"the force laws are fitted to {count} resolved velocities, "
+        f"but a reliable fit needs {FEWEST} or more; give more velocities, or resolve more of them "
+        'with grid.refine = "auto" or a smaller grid.spacing, and run the case again'
+    )
+
+
 def _all(law: Law) -> Iterator[FittedLaw]:
     yield _constant(law)
-    if _seen(law, "restitution").max() < LOSS or _seen(law, "force").max() <= 0:
+    if seen(law, "restitution").max() < LOSS or seen(law, "force").max() <= 0:
         return  # the other laws can fit neither a sticking pair nor purely tensile forces
     yield from _thornton_ning(law)
     yield _walton_braun(law)
@@ -81,8 +98,8 @@ def _all(law: Law) -> Iterator[FittedLaw]:
 
 
 def _constant(law: Law) -> FittedLaw:
-    mean = float(_seen(law, "restitution").mean())
-    return _judged(
+    mean = float(seen(law, "restitution").mean())
+    return judged(
         law,
         "constant",
         lambda V: np.full_like(V, mean),
@@ -95,7 +112,7 @@ def _constant(law: Law) -> FittedLaw:
 def _thornton_ning(law: Law) -> Iterator[FittedLaw]:
     """Fit the yield pressure p_y in two ways: to the maximum forces, and to COR."""
     smooth = law.radius, law.contact_modulus
-    V, force = _seen(law, "velocity"), _seen(law, "force")
+    V, force = seen(law, "velocity"), seen(law, "force")
 
     def forces(x: Array) -> Array:
         bodies = ThorntonNing(*smooth, math.exp(x[0]))
@@ -110,8 +127,8 @@ def _thornton_ning(law: Law) -> Iterator[FittedLaw]:
     begin = math.log(law.yield_pressure or 0.01 * law.contact_modulus)
     V_s = law.sticks_below or law.sticking_velocity or 0.0
 
-    p_y = math.exp(_least_squares(forces, [begin])[0])
-    yield _judged(
+    p_y = math.exp(least_squares_from(forces, [begin])[0])
+    yield judged(
         law,
         "thornton-ning-force",
         lambda v: restitution(v, p_y, V_s),
@@ -123,14 +140,14 @@ def _thornton_ning(law: Law) -> Iterator[FittedLaw]:
 
     scale = law.lowest
     adhesive = V_s > 0
-    x = _fit(
+    x = fit_restitution(
         law,
         lambda v, x: restitution(v, math.exp(x[0]), scale * x[1] if adhesive else 0.0),
         [begin, V_s / scale][: 1 + adhesive],
         [-np.inf, 0.0][: 1 + adhesive],
     )
     found = scale * float(x[1]) if adhesive else 0.0
-    yield _judged(
+    yield judged(
         law,
         "thornton-ning",
         lambda v: restitution(v, math.exp(x[0]), found),
@@ -155,7 +172,7 @@ def _adhesion_of(law: Law, V_s: float) -> Parameters:
 
 
 def _walton_braun(law: Law) -> FittedLaw:
-    k1 = _stiffness(law, exponent=1.0)
+    k1 = stiffness(law, exponent=1.0)
     # Hardening increases the unloading stiffness with the velocity. With the hardening `scale`, the
     # increase at the highest velocity is k1.
     scale = math.sqrt(k1 / law.mass) / law.highest
@@ -180,19 +197,19 @@ def _walton_braun(law: Law) -> FittedLaw:
 
 
 def _luding(law: Law) -> FittedLaw:
-    k1 = _stiffness(law, exponent=1.0)
+    k1 = stiffness(law, exponent=1.0)
     deepest = law.highest * math.sqrt(law.mass / k1)
 
     def springs(x: Array) -> Parameters:
         return {
             "loading_stiffness_N_per_m": k1,
             "limit_stiffness_N_per_m": k1 * math.exp(x[0]),
-            "adhesive_stiffness_N_per_m": k1 * float(x[2]) if adhesive else 0.0,
+            "adhesive_stiffness_N_per_m": k1 * _or_zero(x[2]) if adhesive else 0.0,
             "plasticity_depth": deepest / (2 * law.radius) * math.exp(x[1]),
         }
 
     adhesive = [0.1] if law.work_of_adhesion > 0 else []
-    stiff = -2 * math.log(max(float(_seen(law, "restitution").mean()), 0.05))
+    stiff = -2 * math.log(max(float(seen(law, "restitution").mean()), 0.05))
     return _fitted_springs(
         law,
         "luding",
@@ -207,19 +224,20 @@ def _luding(law: Law) -> FittedLaw:
 
 def _eepa(law: Law) -> FittedLaw:
     n = 1.5
-    k1 = _stiffness(law, exponent=n)
-    force = float(np.abs(_seen(law, "force")).min()) or 1.0
+    k1 = stiffness(law, exponent=n)
+    known, pulls = _pull_off(law)
+    force = float(pulls.mean()) if known.size else float(np.abs(seen(law, "force")).min()) or 1.0
 
     def springs(x: Array) -> Parameters:
         return {
             "loading_stiffness_N_per_m_n": k1,
             "unloading_stiffness_N_per_m_n": k1 * math.exp(x[0]),
-            "adhesive_stiffness_N_per_m_n": k1 * float(x[1]) if adhesive else 0.0,
-            "constant_force_N": -force * float(x[2]) if adhesive else 0.0,
+            "adhesive_stiffness_N_per_m_n": k1 * _or_zero(x[1]) if adhesive else 0.0,
+            "constant_force_N": -force * _or_zero(x[2]) if adhesive else 0.0,
             "exponent": n,
         }
 
-    adhesive = [0.01, 0.01] if law.work_of_adhesion > 0 else []
+    adhesive = [0.01, 0.5 if known.size else 0.01] if law.work_of_adhesion > 0 else []
     return _fitted_springs(
         law,
         "eepa",
@@ -236,24 +254,60 @@ def _eepa(law: Law) -> FittedLaw:
 def _fitted_springs(
     law: Law,
     name: str,
-    theory: Callable[..., ImpactLaw],
+    theory: Callable[..., Any],
     springs: Callable[[Array], Parameters],
     start: list[float],
     low: list[float],
     **words: str,
 ) -> FittedLaw:
-    """Fit a spring model to COR.
+    """Fit a spring model to COR and, with adhesion, to the pull-off forces of the points.
 
     `springs` computes the parameters of the model, in the order of the arguments of `theory`, from
     an array of unknowns. The fit begins with the values `start` and keeps them at or above `low`.
-    `words` are passed to `_judged`.
+    `words` are passed to `judged`.
     """
 
-    def restitution(V: Array, x: Array) -> Array:
-        return theory(*springs(x).values()).restitution(V, law.mass)
+    def model(x: Array) -> Any:
+        return theory(*springs(x).values())
 
-    x = _fit(law, restitution, start, low)
-    return _judged(law, name, lambda V: restitution(V, x), springs(x), **words)
+    def pull_off(x: Array) -> Array:
+        """Fitted divided by computed pull-off force, minus 1, at the points that have one."""
+        fitted = model(x)
+        deepest = fitted.indentation_from_velocity(known, law.mass)
+        return np.asarray(fitted.pull_off_force(deepest) / pulls - 1)
+
+    known, pulls = _pull_off(law)
+    adhesive = law.work_of_adhesion > 0 and known.size > 0
+    x = fit_restitution(
+        law,
+        lambda V, x: model(x).restitution(V, law.mass),
+        start,
+        low,
+        others=(lambda x: _PULL_OFF * pull_off(x)) if adhesive else None,
+    )
+    fit = judged(law, name, lambda V: model(x).restitution(V, law.mass), springs(x), **words)
+    if not adhesive:
+        return fit
+    worst = float(np.abs(pull_off(x)).max())
+    note = f"the pull-off force is within {100 * worst:.2g} % of the computed one"
+    return replace(
+        fit,
+        fitted_to="the coefficient of restitution and the pull-off force",
+        pull_off_misfit=worst,
+        note="; ".join(filter(None, (fit.note, note))),
+    )
+
+
+def _pull_off(law: Law) -> tuple[Array, Array]:
+    """Velocities (m/s) of the resolved points with a pull-off force, and these forces (N)."""
+    V, forces = seen(law, "velocity"), seen(law, "pull_off_force")
+    known = forces > 0
+    return V[known], forces[known]
+
+
+def _or_zero(share: float) -> float:
+    """A parameter in units of its scale; 0 if it has no effect."""
+    return float(share) if share > _ZERO else 0.0
 
 
 def _mdr(law: Law) -> FittedLaw | None:
@@ -267,7 +321,7 @@ def _mdr(law: Law) -> FittedLaw | None:
     E = law.contact_modulus * (1 - nu**2)
     if law.first.wall or law.second.wall:
         share, mass = 1.0, law.mass
-    elif law.first == law.second:
+    elif law.first.may_equal(law.second):
         share, mass, E = 0.5, 2 * law.mass, 2 * E
     else:
         return None
@@ -279,8 +333,8 @@ def _mdr(law: Law) -> FittedLaw | None:
         return restitution(np.array([[1 - _JUMP], [1.0], [1 + _JUMP]]) * V, x)
 
     start = math.log((law.yield_pressure or 0.03 * law.contact_modulus) / 2.8)
-    x = _fit(law, restitution_near_jump, [start], [start - 7], [start + 7])
-    return _judged(
+    x = fit_restitution(law, restitution_near_jump, [start], [start - 7], high=[start + 7])
+    return judged(
         law,
         "lammps-mdr",
         lambda V: restitution(V, x),
@@ -288,103 +342,4 @@ def _mdr(law: Law) -> FittedLaw | None:
         source="W. Zunker, K. Kamrin, J. Mech. Phys. Solids 183 (2024) 105492, as in LAMMPS",
         ends=_AT_FORCE_ZERO,
         note="without the adhesion of the model" if law.work_of_adhesion > 0 else "",
-    )
-
-
-def _seen(law: Law, name: str) -> Array:
-    """Values of the field `name` at the points that the grid resolves."""
-    return law.column(name, resolved=True)
-
-
-def _stiffness(law: Law, exponent: float) -> float:
-    """Stiffness k₁ (N/mⁿ) of a spring with the loading curve F = k₁δⁿ, where n is `exponent`.
-
-    At each resolved point, k₁ follows from the maximum force F and the loading work W:
-    F^{1+1/n} = (n + 1) k₁^{1/n} W. The result is the geometric mean over the points.
-    """
-    force, work, n = _seen(law, "force"), _seen(law, "loading_work"), exponent
-    some = (force > 0) & (work > 0)
-    k1 = (force[some] ** (1 + 1 / n) / ((n + 1) * work[some])) ** n
-    return float(np.exp(np.log(k1).mean()))
-
-
-def _fit(
-    law: Law,
-    restitution: Callable[[Array, Array], Array],
-    start: list[float],
-    low: list[float],
-    high: list[float] | None = None,
-) -> Array:
-    """Fit the parameters x of restitution(V, x) to the COR of the resolved points of `law`.
-
-    The parameters stay within `low` and `high`. `restitution` may return several rows with one
-    value for each point. Each row is then compared with the COR of the points.
-    """
-    V, e = _seen(law, "velocity"), _seen(law, "restitution")
-
-    def misfit(x: Array) -> Array:
-        return np.ravel(np.nan_to_num(restitution(V, x)) - e)
-
-    return _least_squares(misfit, start, low, high)
-
-
-def _least_squares(
-    misfit: Callable[[Array], Array],
-    start: list[float],
-    low: list[float] | None = None,
-    high: list[float] | None = None,
-) -> Array:
-    """Minimise the sum of squares of `misfit`, with searches from several starting points.
-
-    The sum can have several minima, because `misfit` is not smooth. It can also be constant near
-    `start`: without yielding, for example, COR does not depend on the yield pressure. Therefore,
-    the sum is first computed at many points around `start`, and the searches begin at those with
-    the smallest sums.
-    """
-    from scipy.optimize import least_squares
-
-    low = [-np.inf] * len(start) if low is None else low
-    high = [math.log(_MOST) if bound > -20 else np.inf for bound in low] if high is None else high
-    shifts = [_SHIFTS] if len(start) == 1 else [*_FEWER_SHIFTS, *[(0.0,)] * (len(start) - 2)]
-    begins = [np.clip(np.add(start, shift), low, high) for shift in product(*shifts)]
-    begins.sort(key=lambda x: float(np.sum(misfit(x) ** 2)))
-    fits = (
-        least_squares(misfit, begin, bounds=(low, high), x_scale="jac", xtol=1e-10)
-        for begin in begins[: _SEARCHES[len(start) > 1]]
-    )
-    x: Array = min(fits, key=attrgetter("cost")).x
-    return x
-
-
-def _judged(
-    law: Law,
-    name: str,
-    restitution: Callable[[Array], Array],
-    parameters: Parameters,
-    *,
-    source: str,
-    ends: str,
-    fitted_to: str = "the coefficient of restitution",
-    note: str = "",
-) -> FittedLaw:
-    """Make the fitted law, with its COR at the velocities of `law` and its deviations from `law`.
-
-    `ends` states at which force or indentation the contact of the force law ends.
-    """
-    V = law.column("velocity")
-    found = np.where(law.fits_hold_at(V), restitution(V), np.nan)
-    miss = found - law.column("restitution")
-    miss = miss[np.isfinite(found) & law.column("resolved").astype(bool)]
-    if not miss.size:
-        miss, note = np.ones(1), "has no value at these velocities"
-    return FittedLaw(
-        name=name,
-        source=source,
-        fitted_to=fitted_to,
-        parameters=parameters,
-        ends=ends,
-        restitution=tuple(None if math.isnan(e) else float(e) for e in found),
-        rms=float(np.sqrt(np.mean(miss**2))),
-        worst=float(np.abs(miss).max()),
-        note=note,
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -27,7 +28,7 @@ def law_of(out: Path, begin: Begin | None = None) -> Law:
     `begin` is called before each fit (`force_law_fits.Begin`). Raises the errors of `bare_law`.
     """
     law = bare_law(out)
-    return law.model_copy(update={"fit": compact_fit(law), "laws": fitted_laws(law, begin)})
+    return replace(law, fit=compact_fit(law), laws=fitted_laws(law, begin))
 
 
 def bare_law(out: Path) -> Law:
@@ -124,9 +125,7 @@ def _law(out: Path, run: RunResults) -> Law:
             f"the pair sticks at every computed velocity (up to {law.highest:.4g} m/s); it may "
             "rebound at higher velocities"
         )
-    return law.model_copy(
-        update={"sticks_below": law.curve().begins(), "warnings": tuple(warnings)}
-    )
+    return replace(law, sticks_below=law.curve().begins(), warnings=tuple(warnings))
 
 
 def _read(out: Path) -> RunResults:
@@ -219,8 +218,15 @@ def _is_unknown(row: _Row, *, asked: bool) -> bool:
 def _particle(name: str, body: BodyTable) -> Particle:
     return Particle(
         name=body.material or name,
-        radius=body.radius,
+        radius=_rounded(body.radius),
         youngs_modulus=body.youngs_modulus,
         poissons_ratio=body.poissons_ratio,
         density=body.density,
+        yield_strength=body.yield_strength,
+        hardness=body.hardness,
     )
+
+
+def _rounded(value: float | None) -> float | None:
+    """Remove the rounding error of a conversion of units: 9.999999999999999e-06 gives 1e-05."""
+    return None if value is None else float(f"{value:.12g}")

@@ -6,12 +6,13 @@ Between the computed velocities COR is interpolated (`interpolation`). Nothing i
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Annotated, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import ConfigDict, Field, TypeAdapter, model_validator
+from pydantic.dataclasses import dataclass as checked_dataclass
 
 from restitution.case.quantities import read_positive
 from restitution.display import counted, quantity, summary_html, summary_text
@@ -25,22 +26,24 @@ LOSS = 1e-3
 # Largest relative difference of velocities that count as equal. If a run integrates the loading
 # work numerically, it reaches the velocities of its case only to within 1e-4 (`solve_at_velocity`).
 _SAME = 1.01e-4
-
+_DIGITS = 1e-9  # largest relative difference of equal values of two bodies
+_UNNAMED = ("first", "second")  # names of bodies whose case names no material
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 Share = Annotated[float, Field(ge=0, le=1)]
 
 
-class _Stored(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+_STRICT = ConfigDict(extra="forbid", allow_inf_nan=False)
 
 
-class Particle(_Stored):
+@checked_dataclass(frozen=True, kw_only=True, config=_STRICT)
+class Particle:
     """One body of the pair, in SI units. `radius` is None for a flat wall.
 
-    In a mixture, `number_fraction` is the number of particles of this size divided by the number of
-    all particles of the same material.
+    `name` is the material, or "first" or "second" if the case names none. In a mixture,
+    `number_fraction` is the number of particles of this size divided by the number of all particles
+    of the same material.
     """
 
     name: str
@@ -49,6 +52,46 @@ class Particle(_Stored):
     poissons_ratio: Annotated[float, Field(gt=-1, le=0.5)]
     density: Positive | None
     number_fraction: Share | None = None
+    yield_strength: Positive | None = None
+    hardness: Positive | None = None
+
+    @property
+    def material(self) -> str | None:
+        """The name of the material; None if the case names none."""
+        return None if self.name in _UNNAMED else self.name
+
+    @property
+    def distinguishing(self) -> tuple[str | float | None, ...]:
+        """Values that tell two bodies apart only if both bodies have them."""
+        density = None if self.wall else self.density  # the density of a wall has no effect
+        return self.material, density, self.yield_strength, self.hardness
+
+    def may_equal(self, other: Particle) -> bool:
+        """Whether no value of both bodies differs, except the number fraction."""
+        ours = self.radius, self.youngs_modulus, self.poissons_ratio
+        theirs = other.radius, other.youngs_modulus, other.poissons_ratio
+        known = zip(self.distinguishing, other.distinguishing, strict=True)
+        return all(map(_same, ours, theirs)) and all(
+            _same(one, two) for one, two in known if one is not None and two is not None
+        )
+
+    def merged(self, other: Particle) -> Particle:
+        """This body with the values of `other` where its own are unknown."""
+        values = {
+            key: value
+            for key, value in vars(other).items()
+            if value is not None and getattr(self, key) is None
+        }
+        return replace(self, **values)
+
+    def described(self) -> str:
+        """Name, size, and the values that tell bodies with equal elastic constants apart."""
+        known = [
+            f"{name} {quantity(value, 'Pa')}"
+            for name, value in (("Y", self.yield_strength), ("H", self.hardness))
+            if value is not None
+        ]
+        return ", ".join([str(self), *known])
 
     @property
     def wall(self) -> bool:
@@ -57,11 +100,12 @@ class Particle(_Stored):
 
     def __str__(self) -> str:
         """Name and size, for messages and comments."""
-        size = "flat" if self.radius is None else f"R = {self.radius:.6g} m"
+        size = "flat" if self.radius is None else f"R = {quantity(self.radius, 'm')}"
         return f"{one_line(self.name)} ({size})"
 
 
-class Point(_Stored):
+@checked_dataclass(frozen=True, kw_only=True, config=_STRICT)
+class Point:
     """The result at one impact velocity, in SI units.
 
     `ratio` is W_u/W_l, the unloading work divided by the loading work. It is zero or negative if
@@ -87,7 +131,8 @@ class Point(_Stored):
         return self
 
 
-class CompactFit(_Stored):
+@checked_dataclass(frozen=True, kw_only=True, config=_STRICT)
+class CompactFit:
     """Fit e² = Σ c_k L^k − s/V², L = ln(V/V₀)/w, between `lowest` and `highest` velocity.
 
     `coefficients` are c_k, `centre` is V₀, `width` is w and `adhesion` is s (m²/s²). All velocities
@@ -131,13 +176,16 @@ class CompactFit(_Stored):
         return np.where(inside, np.sqrt(e2), np.nan)
 
 
-class FittedLaw(_Stored):
+@checked_dataclass(frozen=True, kw_only=True, config=_STRICT)
+class FittedLaw:
     """A force law of DEM codes, fitted to the computed COR.
 
     The keys of `parameters` include the units. `restitution` is the COR of the force law at the
     computed velocities. It is None where the force law has no solution, and outside
     `Law.fitted_range`. `rms` is the root mean square difference from the computed COR, and `worst`
     the largest difference. Both use only the points at which the grid resolves the contact.
+    `pull_off_misfit` is the largest relative difference from the computed pull-off force; None if
+    the law was not fitted to it.
     """
 
     name: str
@@ -149,9 +197,11 @@ class FittedLaw(_Stored):
     rms: float
     worst: float
     note: str = ""
+    pull_off_misfit: float | None = None
 
 
-class Conventions(_Stored):
+@checked_dataclass(frozen=True, kw_only=True, config=_STRICT)
+class Conventions:
     """Definitions of the quantities of a law, in words."""
 
     end_of_contact: str
@@ -170,7 +220,8 @@ class Estimate:
     resolved: bool
 
 
-class Law(_Stored):
+@checked_dataclass(frozen=True, kw_only=True, config=_STRICT)
+class Law:
     """Coefficient of restitution against impact velocity for one pair, in SI units.
 
     `radius`, `contact_modulus` and `mass` are R*, E* and m*. `friction` is the coefficient of
@@ -199,7 +250,7 @@ class Law(_Stored):
     laws: tuple[FittedLaw, ...] = ()
     warnings: tuple[str, ...] = ()
     case: str = ""
-    versions: dict[str, str] = {}
+    versions: dict[str, str] = field(default_factory=dict)
 
     @model_validator(mode="after")
     def _holds_together(self) -> Self:
@@ -275,6 +326,15 @@ class Law(_Stored):
             below.resolved and above.resolved,
         )
 
+    def restitution(self, velocity: ArrayLike) -> Array:
+        """COR at `velocity` (m/s, any shape), interpolated as by `at`.
+
+        Raises `DomainError` outside the computed velocities.
+        """
+        V = np.asarray(velocity, dtype=float)
+        e = [self.at(v).restitution for v in V.ravel().tolist()]
+        return np.asarray(np.reshape(e, V.shape)[()])
+
     def curve(self) -> RatioCurve:
         """Ratio of unloading to loading work W_u/W_l, interpolated between the velocities."""
         return RatioCurve(
@@ -309,12 +369,23 @@ class Law(_Stored):
     _repr_html_ = summary_html
 
 
+STORED_LAW = TypeAdapter(Law)
+"""Reads and writes a `Law` as JSON."""
+
+
 def velocity_of(text: str) -> float:
     """Return the velocity (m/s) that a text such as "0.5 m/s" gives. Raises `CaseError`."""
     try:
         return read_positive(text, "m/s")
     except ValueError as error:
         raise CaseError(f"velocity: {error}") from None
+
+
+def _same(one: str | float | None, other: str | float | None) -> bool:
+    """Whether two values are equal within rounding."""
+    if isinstance(one, float) and isinstance(other, float):
+        return math.isclose(one, other, rel_tol=_DIGITS)
+    return one == other
 
 
 def _root(ratio: float) -> float:

@@ -14,7 +14,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from restitution.errors import CaseError, OutputError, first_problem
-from restitution.laws.law import Array, Law
+from restitution.laws.law import STORED_LAW, Array, Law
 from restitution.laws.theories import Theory
 from restitution.results.checksums import check_file
 from restitution.results.interruption import hold_signals
@@ -28,7 +28,7 @@ LAWS, MIXTURE_FILE = "laws", "mixture.toml"
 def write_law(law: Law, out: Path) -> list[Path]:
     """Write every file of `law` into `out`, which must be new or empty. Raises `OutputError`."""
     make_folder(out)
-    text = law.model_dump_json(indent=2) + "\n"
+    text = STORED_LAW.dump_json(law, indent=2).decode() + "\n"
     names = [LAW_FILE, "table.csv"]
     with hold_signals():
         replace_file(out / LAW_FILE, lambda to: to.write_text(text, encoding="utf-8"))
@@ -55,7 +55,7 @@ def read_law(folder: Path) -> Law:
         ) from None
     check_file(path)
     try:
-        return Law.model_validate_json(text)
+        return STORED_LAW.validate_json(text)
     except ValidationError as error:
         raise CaseError(
             f"{path}: is not a law of this version ({first_problem(error)}); run `restitution "

@@ -14,7 +14,7 @@ from typing import Any
 from restitution.case.case import Case
 from restitution.case.case_file import parse_case
 from restitution.case.derived import deepest_indentation
-from restitution.case.omissions import omissions
+from restitution.case.omissions import default_yield, omissions
 from restitution.contact.contact import Contact
 from restitution.errors import DomainError, RestitutionError
 from restitution.live.figures import (
@@ -131,6 +131,7 @@ class _Curve:
                 "curve": self.rows,
                 "figures": curve_figures(results),
                 "progress": progress,
+                "information": default_yield(self.case.yielding().source),
                 "warnings": self.warnings,
                 "failure": "" if self.failure is None else str(self.failure),
                 **more,

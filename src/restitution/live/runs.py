@@ -12,6 +12,7 @@ from pathlib import Path
 from tempfile import mkdtemp
 
 from restitution.case.case_file import parse_case
+from restitution.case.omissions import default_yield
 from restitution.errors import RestitutionError
 from restitution.live.figures import as_json, curve_figures
 from restitution.results.reader import read_run
@@ -71,6 +72,7 @@ def results_line(out: Path) -> str:
         {
             "results": run.curve.rows,
             "figures": curve_figures(run.dataset),
+            "information": default_yield(summary["model"]["yield_pressure"]),
             "warnings": summary["warnings"],
             "failure": "" if summary["status"] == "complete" else summary["reason"],
             "seconds": summary["seconds"],

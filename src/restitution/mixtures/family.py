@@ -196,6 +196,8 @@ def _particle(
         youngs_modulus=component.material.youngs_modulus,
         poissons_ratio=component.material.poissons_ratio,
         density=component.material.density,
+        yield_strength=component.material.yield_strength,
+        hardness=component.material.hardness,
         number_fraction=number_fraction,
     )
 

@@ -17,6 +17,7 @@ from restitution.case.materials import LIBRARY
 from restitution.case.quantities import Length
 from restitution.case.roughness import Roughness
 from restitution.case.schema import GridTable, ImpactTable, PairOf, Table
+from restitution.display import quantity
 from restitution.errors import CaseError
 from restitution.mixtures.fractions import number_fractions
 
@@ -52,8 +53,8 @@ class Sizes(Table):
         for (_, high), (low, _) in itertools.pairwise(sorted(self.bins or [])):
             if low < high * (1 - 1e-9):
                 raise ValueError(
-                    f"bins: overlap between {low:.6g} m and {high:.6g} m; let each bin begin where "
-                    "the previous bin ends"
+                    f"bins: overlap between {quantity(low, 'm')} and {quantity(high, 'm')}; let "
+                    "each bin begin where the previous bin ends"
                 )
         return self
 

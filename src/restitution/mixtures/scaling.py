@@ -12,7 +12,7 @@ the next higher velocity.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -80,27 +80,26 @@ class Computed:
         nearest = self.laws[int(np.abs(np.log(self.radii / meeting.radius)).argmin())]
         kappa = nearest.mass / nearest.radius**3
         how = "computed" if self.has(meeting.radius) else "interpolated in R* at equal W/R*^3"
-        law = nearest.model_copy(
-            update={
-                "title": self.family.mixture.title or self.family.name,
-                "first": meeting.first,
-                "second": meeting.second,
-                "radius": meeting.radius,
-                "mass": meeting.mass,
-                "model": {**nearest.model, "pair": how},
-                "yield_velocity": _scaled(nearest.yield_velocity, math.sqrt(kappa / meeting.kappa)),
-                "sticking_velocity": _scaled(
-                    nearest.sticking_velocity,
-                    (meeting.radius / nearest.radius) ** (2 / 3)
-                    * math.sqrt(nearest.mass / meeting.mass),
-                ),
-                "points": self._points(meeting),
-                "fit": None,
-                "laws": (),
-            }
+        law = replace(
+            nearest,
+            title=self.family.mixture.title or self.family.name,
+            first=meeting.first,
+            second=meeting.second,
+            radius=meeting.radius,
+            mass=meeting.mass,
+            model={**nearest.model, "pair": how},
+            yield_velocity=_scaled(nearest.yield_velocity, math.sqrt(kappa / meeting.kappa)),
+            sticking_velocity=_scaled(
+                nearest.sticking_velocity,
+                (meeting.radius / nearest.radius) ** (2 / 3)
+                * math.sqrt(nearest.mass / meeting.mass),
+            ),
+            points=self._points(meeting),
+            fit=None,
+            laws=(),
         )
-        law = law.model_copy(update={"sticks_below": law.curve().begins()})
-        return law.model_copy(update={"fit": compact_fit(law)})
+        law = replace(law, sticks_below=law.curve().begins())
+        return replace(law, fit=compact_fit(law))
 
     def _points(self, meeting: Meeting) -> tuple[Point, ...]:
         velocities, curves = self.family.mixture.velocities, self._curves(meeting)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from restitution.case.omissions import default_yield
 from restitution.contact.checks.resolution import NODES_PER_PATCH
 from restitution.pages.methods import methods
 from restitution.pages.oblique import oblique_drawing
@@ -50,11 +51,15 @@ def write_run_page(out: Path) -> Path:
     ]
     page = Page(
         title=summary["title"] or "Restitution",
-        intro=[_in_words(run)],
+        intro=list(filter(None, (_in_words(run), default_yield(_yield_source(summary))))),
         warnings=summary["warnings"],
         parts=parts,
     )
     return write_page(out / "report.html", page)
+
+
+def _yield_source(summary: Mapping[str, Any]) -> str:
+    return str(summary["model"].get("yield_pressure", "given"))
 
 
 def _in_words(run: RunResults) -> str:

@@ -29,8 +29,9 @@ import math
 from dataclasses import dataclass
 
 from restitution.dem.damping import hunt_crossley_dissipation, hunt_crossley_restitution
-from restitution.dem.export_common import Export, Pair, commented
+from restitution.dem.export_common import Export
 from restitution.dem.friction import friction_note
+from restitution.dem.pair import Pair
 from restitution.dem.pair_table import PairTable
 
 CODE = "Drake"
@@ -80,14 +81,12 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
     return {
         FRAGMENT: export.render(
             FRAGMENT,
-            commented(export.header(), "#"),
             contacts=contacts,
             friction_note=friction_note(export.pairs, "#"),
         ),
         COLLISION: export.render(
             COLLISION,
-            commented(export.summary(FRAGMENT), "#"),
             contacts=contacts,
             steps=_STEPS,
         ),
-    }
+    } | export.notes()

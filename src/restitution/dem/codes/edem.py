@@ -13,8 +13,9 @@ from __future__ import annotations
 import math
 
 from restitution.dem.adhesion import pull_off_force
-from restitution.dem.export_common import Export, Pair, commented, identifier, number
+from restitution.dem.export_common import Export, commented, identifier, number
 from restitution.dem.friction import friction_note
+from restitution.dem.pair import Pair
 from restitution.dem.pair_table import PairTable
 from restitution.results.writer import table_text
 
@@ -26,7 +27,6 @@ _ENDS = (
     "force is back to zero."
 )
 _NOTES = [
-    "",
     "Tables to be typed into EDEM (not tested in EDEM): Interactions, and Bulk Material.",
     "hysteretic_*: the hysteretic spring model fitted to the law, with K2 at the velocity above;",
     "    its restitution is (K1/K2)^(1/2); EDEM computes K1 from the yield strength K1/(5 R*).",
@@ -35,16 +35,15 @@ _NOTES = [
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """Write the two tables; return file names and texts. Raises `DomainError`."""
+    """Write notes and the two tables; return file names and texts. Raises `DomainError`."""
     export = Export(table, velocity, CODE, 0.0, _ENDS)
-    head = export.header() + _NOTES[:2]
     friction = f"{friction_note(export.pairs, '#')}\n# Rolling friction 0 is a placeholder."
-    notes = commented(_NOTES[2:], "#")
-    comments = f"{commented(head, '#')}\n{friction}\n{notes}\n"
+    ending = f"{export.ending('#')}\n".lstrip()
+    comments = f"{export.head('#')}\n{commented(_NOTES, '#')}\n{friction}\n{ending}"
     return {
-        INTERACTIONS: comments + table_text([_interaction(pair) for pair in export.pairs]),
-        MATERIALS: comments + table_text(_materials(table)),
-    }
+        INTERACTIONS: table_text([_interaction(pair) for pair in export.pairs]) + comments,
+        MATERIALS: table_text(_materials(table)) + comments,
+    } | export.notes()
 
 
 def _interaction(pair: Pair) -> dict[str, str]:

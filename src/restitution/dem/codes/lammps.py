@@ -19,8 +19,9 @@ from dataclasses import replace
 
 from restitution.dem.codes.lammps_kokkos import linear_spring, velocity_damping
 from restitution.dem.codes.lammps_mdr import mdr_offers
-from restitution.dem.export_common import STEPS, Export, Pair, commented, number
+from restitution.dem.export_common import STEPS, Export, number
 from restitution.dem.friction import STIFFNESS_SHARE, friction_note
+from restitution.dem.pair import Pair
 from restitution.dem.pair_table import PairTable
 from restitution.dem.velocity_matching import SCRIPT, matching_script
 
@@ -53,23 +54,19 @@ _KOKKOS_ENDS = (
 def write(table: PairTable, velocity: float) -> dict[str, str]:
     """Write the input files for LAMMPS; return file names and texts.
 
-    The files are a fragment to include, a fragment for the package KOKKOS, the script
+    The files are notes, a fragment to include, a fragment for the package KOKKOS, the script
     `match_velocity.py`, a test collision, and a packing. In the packing, spheres of all types fall
     on a wall. There is no packing if `table` has no law between spheres, or if no wall has laws
     with all types of spheres. Raises `CaseError`, `DomainError`.
     """
-    walls_only = all(j > len(table.spheres) for _, j in table.laws)
-    if not walls_only:
-        table.require_spheres(CODE)
+    table.require_spheres(CODE)
     export = Export(table, velocity, CODE, LOWEST, _ENDS)
     pairs = export.pairs
     spheres = [pair for pair in pairs if not pair.wall]
-    short = commented(export.summary(FRAGMENT), "#")
     kokkos = replace(export, ends=_KOKKOS_ENDS, constant=False)
     files = {
         FRAGMENT: export.render(
             FRAGMENT,
-            commented(export.header(), "#"),
             friction_note=friction_note(pairs, "#", _TANGENTIAL),
             tangential=_tangential,
             spheres=spheres,
@@ -78,24 +75,22 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
         ),
         KOKKOS: kokkos.render(
             KOKKOS,
-            commented(kokkos.summary(FRAGMENT), "#"),
             friction_note=friction_note(pairs, "#"),
             spheres=spheres,
             damping=[velocity_damping(pair) for pair in pairs],
             spring=linear_spring(spheres[0]) if len(spheres) == 1 else None,
         ),
         SCRIPT: matching_script(export, "lmp -in my.in", FRAGMENT, "matched.lmp"),
-        COLLISION: export.render(COLLISION, short, size=table.largest_radius, steps=STEPS),
+        COLLISION: export.render(COLLISION, size=table.largest_radius, steps=STEPS),
     }
     floor = _floor(table)
-    if floor is not None and not walls_only:
+    if floor is not None and not table.walls_only:
         size = table.largest_radius
         edge = 24 * size
         height = _GRAINS * 4.2 * size**3 / (_FILLED * edge**2)
         step = min(pair.contact_time for pair in pairs) / _PACKING_STEPS
         files[PACKING] = export.render(
             PACKING,
-            short,
             counts=_counts(table),
             floor=floor,
             size=size,
@@ -104,7 +99,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
             step=step,
             count=1000 * math.ceil(_FALLS * height / (velocity * step) / 1000),
         )
-    return files
+    return files | export.notes()
 
 
 def _tangential(pair: Pair) -> str:

@@ -22,7 +22,7 @@ import math
 from dataclasses import dataclass
 
 from restitution.dem.damping import hertz_damping, hertz_restitution_at
-from restitution.dem.export_common import Pair
+from restitution.dem.pair import Pair
 
 
 @dataclass(frozen=True)

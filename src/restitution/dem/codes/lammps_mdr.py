@@ -12,8 +12,11 @@ but fix wall/gran/region accepts only the values of pair_style.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
-from restitution.dem.export_common import Pair
+from restitution.dem.export_common import commented, wrapped
+from restitution.dem.notes import numbers
+from restitution.dem.pair import Pair
 from restitution.laws.law import FittedLaw
 
 NAME = "lammps-mdr"
@@ -21,12 +24,26 @@ NAME = "lammps-mdr"
 _FAR = 0.1
 
 
-def mdr_offers(pairs: list[Pair]) -> list[tuple[Pair, FittedLaw | None, str]]:
-    """Return every pair with its fitted mdr law (or None) and the reason not to offer this law.
+@dataclass(frozen=True)
+class MdrOffers:
+    """Pairs with their fitted mdr laws, and comments with the reasons why other pairs have none."""
 
-    The reason is empty if the law can be offered.
-    """
-    return [(pair, pair.fitted(NAME), _obstacle(pairs, pair)) for pair in pairs]
+    offers: list[tuple[Pair, FittedLaw]]
+    reasons: list[str]
+
+
+def mdr_offers(pairs: list[Pair]) -> MdrOffers:
+    """Find the pairs for which the fitted mdr law can be offered."""
+    offers: list[tuple[Pair, FittedLaw]] = []
+    refused: dict[str, list[Pair]] = {}
+    for pair in pairs:
+        obstacle, fit = _obstacle(pairs, pair), pair.fitted(NAME)
+        if obstacle or fit is None:
+            refused.setdefault(obstacle, []).append(pair)
+        else:
+            offers.append((pair, fit))
+    reasons = (f"No mdr line for {numbers(of)}: {reason}." for reason, of in refused.items())
+    return MdrOffers(offers, [commented(wrapped([text]), "#") for text in reasons])
 
 
 def _obstacle(pairs: list[Pair], pair: Pair) -> str:
@@ -34,12 +51,12 @@ def _obstacle(pairs: list[Pair], pair: Pair) -> str:
     spheres = [other for other in pairs if not other.wall]
     if not pair.wall and len(spheres) > 1:
         return (
-            "LAMMPS accepts one mdr model in a pair_style, with the same values for all\n"
+            "LAMMPS accepts one mdr model in a pair_style, with the same values for all "
             "pairs of types, and no other normal model; this export has several types"
         )
     if pair.wall and spheres and any(_obstacle(spheres, other) for other in spheres):
         return (
-            "LAMMPS accepts mdr at a wall only if pair_style granular has mdr, too,\n"
+            "LAMMPS accepts mdr at a wall only if pair_style granular has mdr, too, "
             "but no mdr line is offered for the pairs of spheres above"
         )
     return _unfit(pair)

@@ -11,8 +11,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from restitution.dem.export_common import FRICTION, STEPS, Export, Pair, commented, number
+from restitution.dem.export_common import STEPS, Export, number
 from restitution.dem.friction import friction_note
+from restitution.dem.pair import FRICTION, Pair
 from restitution.dem.pair_table import PairTable
 from restitution.dem.velocity_matching import SCRIPT, matching_script
 
@@ -28,6 +29,10 @@ _TANGENTIAL = (
     "that slide are exact, but impacts that stick return too much tangential velocity "
     "(docs/oblique.md)."
 )
+SETTING = (
+    "define NAMES, such as `variable e_1_1 index 0.9`, before you include this file (otherwise "
+    f"LIGGGHTS stops). Friction of these pairs is {FRICTION}, a placeholder."
+)
 # Upper and lower limit of E (Pa). LIGGGHTS needs an additional command to accept other values.
 _HARD, _SOFT = 1e9, 5e6
 
@@ -35,30 +40,34 @@ _HARD, _SOFT = 1e9, 5e6
 def write(table: PairTable, velocity: float) -> dict[str, str]:
     """Write the input files for LIGGGHTS; return file names and texts.
 
-    The files are a fragment to include, the script `match_velocity.py`, and a test collision that
-    prints e. Raises `CaseError`, `DomainError`.
+    The files are notes, a fragment to include, the script `match_velocity.py`, and a test collision
+    that prints e. Raises `CaseError`, `DomainError`.
     """
     table.require_all(CODE)
-    export = Export(table, velocity, CODE, LOWEST, _ENDS)
+    export = Export(table, velocity, CODE, LOWEST, _ENDS, setting=SETTING)
     pairs = export.pairs
+    unset = table.missing_spheres()
     return {
         FRAGMENT: export.render(
             FRAGMENT,
-            commented(export.header(), "#"),
             hardness=_hardness(table),
-            restitution=_by_types(table, pairs, lambda p: f"${{e_{p.i}_{p.j}}}", walls="1"),
-            friction=_by_types(table, pairs, lambda p: number(p.friction), walls=number(FRICTION)),
+            restitution=_by_types(
+                table, pairs, lambda p: f"${{e_{p.i}_{p.j}}}", "1", "${{e_{}_{}}}"
+            ),
+            friction=_by_types(
+                table, pairs, lambda p: number(p.friction), number(FRICTION), number(FRICTION)
+            ),
             friction_note=friction_note(pairs, "#", _TANGENTIAL),
         ),
         SCRIPT: matching_script(export, "liggghts -in my.in", FRAGMENT, "matched.liggghts"),
         COLLISION: export.render(
             COLLISION,
-            commented(export.summary(FRAGMENT), "#"),
+            unset=unset,
             size=table.largest_radius,
             steps=STEPS,
             hardness=_hardness(table),
         ),
-    }
+    } | export.notes()
 
 
 def _hardness(table: PairTable) -> str:
@@ -73,12 +82,14 @@ def _hardness(table: PairTable) -> str:
 
 
 def _by_types(
-    table: PairTable, pairs: list[Pair], entry: Callable[[Pair], str], walls: str
+    table: PairTable, pairs: list[Pair], entry: Callable[[Pair], str], walls: str, spheres: str
 ) -> list[list[str]]:
     """Return a symmetric matrix with a row and a column for each type.
 
     `entry` gives the text for a pair. Two walls never touch, so every pair of walls gets `walls`.
+    `spheres` is the text for a pair of spheres that has no law, with braces for its types.
     """
-    known = {(pair.i, pair.j): entry(pair) for pair in pairs}
+    known = {(p.i, p.j): entry(p) for p in pairs}
+    known |= {(i, j): spheres.format(i, j) for i, j in table.missing_spheres()}
     numbers = range(1, len(table.particles) + 1)
     return [[known.get((min(i, j), max(i, j)), walls) for j in numbers] for i in numbers]

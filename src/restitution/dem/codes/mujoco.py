@@ -26,8 +26,9 @@ import math
 from dataclasses import dataclass
 
 from restitution.dem.damping import dashpot_ratio
-from restitution.dem.export_common import Export, Pair, commented, xml_comment
+from restitution.dem.export_common import Export
 from restitution.dem.friction import friction_note
+from restitution.dem.pair import Pair
 from restitution.dem.pair_table import PairTable
 
 CODE = "MuJoCo"
@@ -82,7 +83,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
     return {
         FRAGMENT: export.render(
             FRAGMENT,
-            xml_comment(export.header()),
+            "",
             contacts=contacts,
             share=_DEEPEST,
             coarse=_COARSE,
@@ -90,11 +91,10 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
         ),
         COLLISION: export.render(
             COLLISION,
-            commented(export.summary(FRAGMENT), "#"),
             contacts=contacts,
             steps=_STEPS,
         ),
-    }
+    } | export.notes()
 
 
 def _contact(pair: Pair) -> Contact:

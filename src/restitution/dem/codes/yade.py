@@ -22,8 +22,9 @@ from __future__ import annotations
 
 from functools import partial
 
-from restitution.dem.export_common import Export, Pair, commented, contact_time, density_of
+from restitution.dem.export_common import Export, density_of
 from restitution.dem.friction import STIFFNESS_SHARE, friction_note
+from restitution.dem.pair import FRICTION, Pair, contact_time
 from restitution.dem.pair_table import PairTable
 from restitution.dem.velocity_matching import law_points
 from restitution.laws.law import Particle
@@ -34,11 +35,15 @@ FRAGMENT, COLLISION = "restitution_yade.py", "collision_yade.py"
 _ENDS = (
     "the force is back to zero, which is before the overlap is zero: the force is never tensile. e "
     "is given as betan, not as en, because en = 0.99 gives e = 0.979 in YADE 2023.02a. On a wall "
-    "YADE uses R*/2 instead of R*, so the contact is softer by a factor of sqrt(2); e is the same."
+    "YADE uses half of R*, so the contact is softer by a factor of sqrt(2); e is the same."
 )
 _TANGENTIAL = (
     "The functions `soften` and `follow` reduce the tangential stiffness of these pairs, because "
     "the edge of a contact slides first (docs/oblique.md)."
+)
+SETTING = (
+    "give it as the second argument of physics, such as physics(ids, {(1, 1): 0.9}). Friction of "
+    f"these pairs is {FRICTION}, a placeholder."
 )
 _STEPS = 2000  # number of time steps in the contact of the test collision
 # Density (kg/m³) of a wall whose case gives none. YADE needs a value, which has no effect.
@@ -48,16 +53,18 @@ _FIT = (-1.23589, 0.202669, 0.0108748, 0.000410051, -3.09169e-5, -1.19887e-6)
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """Write a module to import and a test collision that prints e; return file names and texts.
+    """Write notes, a module to import and a test collision that prints e.
 
+    Returns file names and texts.
     Raises `CaseError`, `DomainError`.
     """
     table.require_all(CODE)
-    export = Export(table, velocity, CODE, LOWEST, _ENDS)
+    export = Export(table, velocity, CODE, LOWEST, _ENDS, setting=SETTING)
     return {
         FRAGMENT: export.render(
             FRAGMENT,
-            commented(export.header(), "#"),
+            unset=table.missing_spheres(),
+            placeholder=FRICTION,
             fit=_FIT,
             wall_density=_WALL_DENSITY,
             density=_density,
@@ -67,11 +74,10 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
         ),
         COLLISION: export.render(
             COLLISION,
-            commented(export.summary(FRAGMENT), "#"),
             steps=_STEPS,
             pair_time=_contact_time,
         ),
-    }
+    } | export.notes()
 
 
 def _tangential(pair: Pair) -> float:

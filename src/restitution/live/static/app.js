@@ -375,7 +375,7 @@ function takeCurve(line, asked) {
   showProblems(line.failure ? problemsOf(line.failure) : {});
   curve = { rows: line.curve, figures: line.figures, errors: false, content: asked };
   mark(false);
-  showWarnings(line.warnings);
+  showWarnings(line);
   drawCurves();
   drawNumbers();
   if (!line.progress) { say(`${line.curve.length} depths in ${line.seconds.toFixed(2)} s`); }
@@ -413,7 +413,7 @@ async function runWhole() {
       else if (line.results) {
         curve = { rows: line.results, figures: line.figures, errors: true, content: asked };
         if (line.failure) showProblems(problemsOf(line.failure));
-        showWarnings(line.warnings);
+        showWarnings(line);
         drawCurves();
         drawNumbers();
         say(`complete in ${line.seconds.toFixed(1)} s${line.includes ? `; the total error includes ${line.includes}` : ""}`);
@@ -547,8 +547,10 @@ function drawNumbers() {
   fill("numbers", Object.values(SHOWN), curve.rows.map((row) => keys.map((key) => digits(row[key], key.endsWith("error") ? 2 : 6))));
 }
 
-function showWarnings(warnings) {
-  $("warnings").replaceChildren(...warnings.map((words) => element("p", { class: "warning", role: "note" }, words)));
+function showWarnings({ information, warnings }) {
+  const notes = warnings.map((words) => element("p", { class: "warning", role: "note" }, words));
+  if (information) notes.push(element("p", { class: "information", role: "note" }, information));
+  $("warnings").replaceChildren(...notes);
 }
 
 // ---- pins -------------------------------------------------------------------------------------

@@ -1,0 +1,103 @@
+"""The notes of an export: origin and conventions of every pair, and warnings with their pairs."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Sequence
+from contextlib import suppress
+
+from restitution.dem.adhesion import adhesion_lines
+from restitution.dem.pair import Pair
+from restitution.display import without_numbers
+from restitution.errors import DomainError, one_line
+from restitution.laws.law import Law
+
+_MOST = 20  # largest number of pairs that are listed after a warning
+
+
+def grouped_warnings(pairs: Sequence[Pair]) -> list[str]:
+    """Write each warning once, with the pairs for which it holds.
+
+    Warnings that differ only in numbers count as one.
+    """
+    groups: dict[str, list[tuple[Pair, str]]] = {}
+    for pair in pairs:
+        for text in dict.fromkeys(_warnings(pair)):
+            groups.setdefault(without_numbers(text), []).append((pair, text))
+    return [f"WARNING: {_in_words(group, len(pairs))}" for group in groups.values()]
+
+
+def numbers(pairs: Sequence[Pair], count: int = 0) -> str:
+    """List the type numbers of `pairs`: "pair 1 1", or "pairs 1 1, 1 2".
+
+    If there are several pairs and they are all pairs of the export (`count`), say so.
+    """
+    if 1 < len(pairs) == count:
+        return "all pairs"
+    listed = [f"{pair.i} {pair.j}" for pair in pairs[:_MOST]]
+    more = f" and {len(pairs) - _MOST} more" if len(pairs) > _MOST else ""
+    return f"pair{'' if len(pairs) == 1 else 's'} {', '.join(listed)}{more}"
+
+
+def about(pairs: Sequence[Pair], code: str) -> list[str]:
+    """Describe the law of each pair. Lines that are the same for all pairs are written once."""
+    described = [_about(pair, code) for pair in pairs]
+    common = [line for line in described[0] if all(line in lines for lines in described)]
+    several = len(pairs) > 1
+    lines = ["", "All pairs:", *common] if several and common else []
+    for pair, own in zip(pairs, described, strict=True):
+        lines += ["", f"Pair {pair.i} {pair.j}: {pair.first} and {pair.second}"]
+        lines += [line for line in own if not several or line not in common]
+    return lines
+
+
+def _warnings(pair: Pair) -> list[str]:
+    """The warnings of a pair; `{pairs}` stands for the pairs for which a warning holds."""
+    lines, V = [], f"{pair.velocity:.6g} m/s"
+    if not pair.law.at(pair.velocity).resolved:
+        lines.append(
+            f"unresolved at {V} ({{pairs}}): the grid was too coarse there, and the error of e "
+            "may be too small"
+        )
+    if pair.restitution == 0:
+        lines.append(f"{{pairs}} sticks at {V}, but e = 0 does not keep the bodies in contact")
+    return lines + [f"{{pairs}}: {text}" for text in pair.law.warnings]
+
+
+def _in_words(group: Sequence[tuple[Pair, str]], count: int) -> str:
+    pairs, texts = [pair for pair, _ in group], {text for _, text in group}
+    differ = " (with other numbers for other pairs)" if len(texts) > 1 else ""
+    text = group[0][1]
+    if len(pairs) > 1:
+        text = text.replace("{pairs} sticks", "{pairs} stick", 1)
+    return text.replace("{pairs}", numbers(pairs, count), 1) + differ
+
+
+def _about(pair: Pair, code: str) -> list[str]:
+    law, velocity = pair.law, pair.velocity
+    p_y = "none (elastic)" if law.yield_pressure is None else f"{law.yield_pressure:.6g} Pa"
+    title = textwrap.shorten(one_line(law.title), 200, placeholder=" ...")
+    source = law.model.get("yield_pressure", "given")
+    return [
+        *([f"  title: {title}"] if title else []),
+        f"  e = {pair.restitution:.6g} +/- {law.at(velocity).error:.2g} at {velocity:.6g} m/s"
+        + _elsewhere(law, velocity),
+        f"  R* = {law.radius:.6g} m, E* = {law.contact_modulus:.6g} Pa, m* = {law.mass:.6g} kg",
+        f"  yield pressure p_y: {p_y}; convention: {law.conventions.yield_pressure}",
+        f"  source of the yield pressure: {source}",
+        f"  end of contact assumed for e: {law.conventions.end_of_contact}",
+        f"  the error of e includes: {law.conventions.restitution_error}",
+        f"  elastic contact time: {pair.contact_time:.3g} s; a time step of 1/50 "
+        "of this time changes e by at most 1 % in LAMMPS",
+        f"  computed from {law.lowest:.4g} to {law.highest:.4g} m/s; nothing is extrapolated",
+        *adhesion_lines(law, velocity, code),
+    ]
+
+
+def _elsewhere(law: Law, velocity: float) -> str:
+    """State e at half and at twice `velocity` (m/s), if the law includes these velocities."""
+    said = []
+    for V in (velocity / 2, velocity * 2):
+        with suppress(DomainError):
+            said.append(f"{law.at(V).restitution:.4g} at {V:.6g} m/s")
+    return f" (but {', '.join(said)})" if said else ""
