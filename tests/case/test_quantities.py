@@ -36,6 +36,20 @@ def test_units(text, unit, expected):
 
 
 @pytest.mark.parametrize(
+    ("text", "unit", "expected"),
+    [
+        ("10 um", "m", "1e-05"),
+        ("5 um", "m", "5e-06"),
+        ("3.3 um", "m", "3.3e-06"),
+        ("7.85 g/cm^3", "kg/m^3", "7850.0"),
+        ("68.9 GPa", "Pa", "68900000000.0"),
+    ],
+)
+def test_values_keep_the_digits_of_the_file(text, unit, expected):
+    assert repr(read_quantity(text, unit)) == expected
+
+
+@pytest.mark.parametrize(
     "value",
     [
         "",

@@ -344,3 +344,33 @@ def test_other_kinds_of_files_are_named(refused, tmp_path):
     (tmp_path / "m.csv").write_text("velocity_m_per_s,restitution\n0.1,0.8\n")
     said = refused("run", tmp_path / "m.csv", "-o", tmp_path / "out")
     assert "this is a table of values, not a case file: give the case file" in said
+
+
+HEAD = '[first]\nmaterial = "steel"\n'
+
+
+@pytest.mark.parametrize("verb", ["check", "run"])
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (
+            HEAD + 'diameter = "5 um"',
+            "first.diameter: unknown key; give radius = half the diameter",
+        ),
+        ('materials = ["steel"]', "this is a mixture: use `restitution mixture FILE`"),
+        (HEAD + "radius = 5 um", 'write texts and quantities in quotes: radius = "5 um"'),
+        (HEAD + "radius = um", 'write texts and quantities in quotes: radius = "um"'),
+        (HEAD + 'radius = "5 um"\nradius = "6 um"', '"radius" is given twice: remove one of them'),
+        ("velocity,restitution\n1,0.5", "this is a table of values, not a case file"),
+    ],
+)
+def test_the_likely_cause_of_a_wrong_file_is_named(refused, tmp_path, verb, text, words):
+    (tmp_path / "case.toml").write_text(text)
+    more = ("-o", tmp_path / "out") if verb == "run" else ()
+    assert words in refused(verb, tmp_path / "case.toml", *more)
+
+
+def test_a_study_is_not_run_as_a_case(refused, tmp_path):
+    (tmp_path / "study.toml").write_text(HEAD + '[sweep]\n"first.radius" = ["1 um"]')
+    message = refused("run", tmp_path / "study.toml", "-o", tmp_path / "out")
+    assert "this is a study: use `restitution study FILE`" in message

@@ -81,6 +81,60 @@ def test_the_curvature_that_was_subtracted_is_printed(surface, scan, tmp_path):
     assert f"a sphere with a radius of {radius}" in " ".join(printed.split())
 
 
+def test_a_sphere_left_in_the_scan_is_named_by_every_verb(cli, case, scan, tmp_path):
+    x = 0.1e-6 * (np.arange(96) - 48)
+    np.save(tmp_path / "scan.npy", scan - np.add.outer(x**2, x**2) / (2 * 50e-6) + 0.05 * x)
+    for verb, *more in (
+        ("check",),
+        ("surface", "-o", tmp_path / "s"),
+        ("run", "-o", tmp_path / "r"),
+    ):
+        status, out, err = cli(verb, case(), *more)
+        assert status == 0
+        words = " ".join((out + err).split())
+        assert "scan.npy: the scan is curved like a sphere with a radius of" in words
+        assert "R* = 25 µm contains: set roughness.detrend" in words
+    saved = json.loads((tmp_path / "s" / "statistics.json").read_text())
+    assert any("the scan is curved" in line for line in saved["warnings"])
+
+
+def test_spikes_are_named_by_every_verb_and_no_finer_grid_is_advised(cli, case, scan, tmp_path):
+    spoiled = scan.copy()
+    spoiled[8::16, 8::16] += 0.4e-6
+    np.save(tmp_path / "scan.npy", spoiled)
+    for verb, *more in (
+        ("check",),
+        ("surface", "-o", tmp_path / "s"),
+        ("run", "-o", tmp_path / "r"),
+    ):
+        status, out, err = cli(verb, case(), *more)
+        assert status == 0
+        words = " ".join((out + err).split())
+        assert "scan.npy: 36 spikes of up to 4" in words
+        assert "roughness.outliers = 8" in words
+        assert "converge" not in words
+        assert "rms slope of the surface" not in words
+    _, out, err = cli("check", case("outliers = 8"))
+    assert "spikes of up to" not in out + err
+
+
+def test_heights_in_a_wrong_unit_are_refused(refused, cli, case, scan, tmp_path):
+    np.save(tmp_path / "scan.npy", 100 * scan)
+    message = refused("check", case())
+    assert "and half-space theory means nothing above 3" in message
+    assert re.search(r"check the unit of the heights in \S*scan\.npy and roughness\.size", message)
+    status, _, err = cli("surface", case(), "-o", tmp_path / "s")
+    assert status == 0
+    assert "check the unit of the heights in" in " ".join(err.split())
+
+
+def test_lengths_of_a_surface_have_prefixes(cli, case, tmp_path):
+    _, out, _ = cli("surface", case(), "-o", tmp_path / "s")
+    assert re.search(r"root mean square height Sq +\d\d\.\d+ +nm", out)
+    assert re.search(r"rms curvature +[\d.]+ +1/µm", out)
+    assert "_m" not in out.split("In ")[0]
+
+
 def test_a_part_of_a_scan(surface, scan):
     found, _ = surface('crop = { x = ["-2 um", "3.05 um"] }')
     assert found["provenance"]["cropped"] == "51 x 96 of 96 x 96 pixels"

@@ -53,6 +53,13 @@ def test_adhesion_leaves_the_energy_that_plasticity_may_miss(yields):
     assert model_error(state, 0.01) <= 0.99
 
 
+def test_it_is_at_most_the_largest_possible_error():
+    """The parts due to plasticity and to adhesion may add up to more than 1."""
+    state = solve(contact(yield_pressure=2.8e9, work_of_adhesion=5.0), 5e-7)
+    for e in (0.0, 0.2, 0.9):
+        assert model_error(state, e) <= max(e, 1 - e)
+
+
 SPHERES = Path(__file__).parents[2] / "docs" / "studies" / "cohesive_reference.csv"
 
 

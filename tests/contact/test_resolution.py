@@ -108,6 +108,10 @@ def test_a_grid_finer_than_the_scan_is_found(contact):
     assert resolution_findings(contact(pixel_x_m=0.2015e-6), deep) == []  # rounded by the user
     found = resolution_findings(contact(pixel_x_m=0.5e-6), deep)
     assert found == [Finding("finer-than-scan", {"spacing": 0.2e-6, "pixel": 0.5e-6})]
+    # cells that are finer only because refinement was chosen
+    assert resolution_findings(contact(pixel_x_m=0.4e-6, refined=2), deep) == []
+    found = resolution_findings(contact(pixel_x_m=0.5e-6, refined=2), deep)
+    assert found == [Finding("finer-than-scan", {"spacing": 0.4e-6, "pixel": 0.5e-6})]
 
 
 def test_a_scan_coarser_than_the_contact_is_found(contact):

@@ -17,7 +17,13 @@ from restitution.contact.checks.resolution import (
 from restitution.contact.path import loading_path
 from restitution.errors import CaseError, DomainError, NotConvergedError, SurfaceError
 from restitution.runs.depths import loaded_depths
-from restitution.runs.messages import input_warnings, message, naming_keys, require_possible
+from restitution.runs.messages import (
+    input_warnings,
+    message,
+    naming_keys,
+    require_possible,
+    surface_warnings,
+)
 
 STEEL = Pair(*2 * [Body(500e-6, 210e9, 0.25)])
 GRID = Grid((64, 64), (0.5e-6, 0.5e-6))
@@ -42,6 +48,41 @@ def test_a_tilted_scan():
     assert line.startswith("scan.npy: the scan is tilted (a plane explains ")
     assert 'set roughness.detrend = "tilt"' in line
     assert len(input_warnings(measured(ROUGH + 6e-2 * X, levelling="tilt"), 1e-7)) == 1
+
+
+def test_a_curved_scan_counts_the_sphere_twice():
+    (line,) = surface_warnings(measured(ROUGH - (X**2 + Y**2) / 1e-3).surface, 250e-6)
+    assert re.fullmatch(
+        r"scan.npy: the scan is curved like a sphere with a radius of (49\d|50\d).* µm \(which "
+        r"explains 9\d% of the variance of its heights\), and this adds to the shape of the "
+        r'particles, which R\* = 250 µm contains: set roughness.detrend = "curvature"',
+        line,
+    )
+    (line,) = surface_warnings(measured((X**2 + Y**2) / 1e-3).surface)
+    assert "like a hollow with a radius of 500 µm" in line
+    assert "only a part of it would touch a flat body" in line
+
+
+def test_spikes_are_named_with_their_key_and_come_before_the_slope():
+    spiky = ROUGH.copy()
+    spiky[::16, ::16] += 1e-6
+    words = "scan.npy: 16 spikes of up to 1.0"
+    assert surface_warnings(measured(spiky).surface)[0].startswith(words)
+    assert "roughness.outliers = 8 replaces" in input_warnings(measured(spiky), 4e-7)[0]
+    spiky[::16, ::16] += 1e-4
+    with pytest.raises(SurfaceError, match=r"16 spikes of up to 101 µm: roughness\.outliers"):
+        require_possible(measured(spiky), 4e-7)
+
+
+def test_impossible_slopes_name_the_unit():
+    steep = 1000 * ROUGH
+    unscanned = Surface(steep, GRID, {"source": "generated"})
+    with pytest.raises(SurfaceError, match=r"slope is 2\d.*above 3 .*the unit of roughness\.rms"):
+        require_possible(Contact(STEEL, unscanned, 750e6), 4e-7)
+    with pytest.raises(SurfaceError, match=r"the unit of the heights in scan\.npy"):
+        require_possible(measured(steep), 4e-7)
+    (line,) = surface_warnings(unscanned)
+    assert "the unit of roughness.rms" in line
 
 
 def test_contact_at_the_rim_is_foreseen_where_smooth_bodies_would_not_have_it():

@@ -75,11 +75,7 @@ def parse_toml(text: str) -> dict[str, Any]:
     except RecursionError:
         raise _too_deep() from None
     except tomllib.TOMLDecodeError as error:
-        twice = re.match(r"Cannot declare \('(\w+)',\) twice", str(error))
-        hint = f"; for several tables, begin each of them with [[{twice[1]}]]" if twice else ""
-        if _is_table_of_numbers(text):
-            hint = "; this is a table of values, not a case file: give the case file"
-        raise CaseError(f"not valid TOML: {error}{hint}") from None
+        raise CaseError(f"not valid TOML: {error}{_likely_cause(error, text)}") from None
     except ValueError:  # Python refuses to read an integer of more than 4300 digits
         raise CaseError("contains a number with thousands of digits; correct it") from None
     _check_depth(content)
@@ -90,6 +86,26 @@ def _is_table_of_numbers(text: str) -> bool:
     """Whether the first line of `text` has cells, as in a CSV file, but no key of TOML."""
     first = text.lstrip("\ufeff \t\r\n").partition("\n")[0]
     return "=" not in first and "[" not in first and any(sign in first for sign in ",;\t")
+
+
+def _likely_cause(error: tomllib.TOMLDecodeError, text: str) -> str:
+    """The likely cause of a TOML error and its remedy; "" if there is none."""
+    if twice := re.match(r"Cannot declare \('(\w+)',\) twice", str(error)):
+        return f"; for several tables, begin each of them with [[{twice[1]}]]"
+    place = re.search(r"at line (\d+), column", str(error))
+    lines = text.splitlines() or [""]  # without a place, the error is at the end of the text
+    line = lines[min(int(place[1]), len(lines)) - 1] if place else lines[-1]
+    key, equals, value = line.partition("=")
+    key, value = key.strip(), value.strip()
+    if str(error).startswith("Cannot overwrite a value"):
+        return f"; {shown(key)} is given twice: remove one of them"
+    if _is_table_of_numbers(text):
+        return "; this is a table of values, not a case file: give the case file"
+    if equals and str(error).startswith(("Invalid value", "Expected newline")) and value:
+        return (
+            f'; write texts and quantities in quotes: {shown(key)[1:-1]} = "{shown(value)[1:-1]}"'
+        )
+    return ""
 
 
 def _too_deep() -> CaseError:
@@ -123,7 +139,16 @@ def parse_case(text: str) -> Case:
     try:
         return Case.model_validate(content)
     except ValidationError as error:
-        raise CaseError(in_words(error)) from None
+        raise CaseError(_other_kind(content) or in_words(error)) from None
+
+
+def _other_kind(content: dict[str, Any]) -> str:
+    """Say which command reads `content` if it is the file of a mixture or study; otherwise ""."""
+    if "materials" in content and "first" not in content:
+        return "this is a mixture: use `restitution mixture FILE`"
+    if "sweep" in content:
+        return "this is a study: use `restitution study FILE`"
+    return ""
 
 
 def problems_of(content: dict[str, Any]) -> dict[str, str]:
@@ -207,6 +232,8 @@ def _in_words(problem: Any, root: type[Table]) -> str:
         hint = f"known keys: {', '.join(known)}" if known else "remove it"
         if len(keys) > 1 and keys[-1] in root.model_fields:
             return f"{key}: unknown key; write {keys[-1]} above the first [table] of the file"
+        if keys[-1] == "diameter" and "radius" in known:
+            return f"{key}: unknown key; give radius = half the diameter"
         return f"{key}: unknown key; {did_you_mean(keys[-1], known) or hint}"
     if kind == "missing":
         what = f"the table [{key}]" if len(keys) == 1 else f'the key "{key}"'

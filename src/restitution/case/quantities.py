@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from decimal import Decimal
 from functools import lru_cache
 from typing import Annotated, Any, NamedTuple
 
@@ -86,7 +87,7 @@ def read_quantity(value: object, unit: str) -> float:
         missing = len(value) <= LONGEST and re.fullmatch(rf"\s*{_NUMBER}\s*", value)
         problem = "has no unit" if missing else "is not one number followed by a unit"
         raise ValueError(f"{shown(value)} {problem}; {example}")
-    number, name = float(match[1]), match[2].replace("·", "*").replace("^", "**")
+    name = match[2].replace("·", "*").replace("^", "**")
     try:
         quantity = _registry().Quantity(1.0, _POWER.sub(r"**\1", name))
         factor = float(quantity.m_as(unit))
@@ -98,10 +99,18 @@ def read_quantity(value: object, unit: str) -> float:
     if unit == "rad/s" and not any(word in str(quantity.units) for word in _TURNS):
         # In pint, 1 Hz is 1 rad/s, but most users mean one turn per second.
         raise ValueError(f"{shown(value)} is not a spin, because its unit has no angle; {example}")
-    result = number * factor
+    result = _product(match[1], factor)
     if not math.isfinite(result):
         raise ValueError(f"{shown(value)} is not a finite number; {example}")
     return result
+
+
+def _product(number: str, factor: float) -> float:
+    """Multiply as decimals, so that "10 um" is 1e-05 m, and not 9.999999999999999e-06 m."""
+    decimal = f"{factor:.12g}"  # the factor of g/cm^3 is 999.9999999999999 in pint
+    if not math.isclose(float(decimal), factor, rel_tol=1e-15):
+        decimal = repr(factor)
+    return float(Decimal(number) * Decimal(decimal))
 
 
 def scaled(value: str, factor: float, digits: int = 17) -> str:

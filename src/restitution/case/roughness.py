@@ -27,6 +27,7 @@ from restitution.surfaces import (
     remove_outliers,
 )
 from restitution.surfaces.cache import kept
+from restitution.surfaces.defects import noted
 from restitution.surfaces.extend import Extension
 from restitution.surfaces.generate import RoughnessKind
 from restitution.surfaces.refine import divided
@@ -190,7 +191,7 @@ class MeasuredRoughness(Table):
                 scan = remove_outliers(scan, self.outliers)
         # Level the scan before cutting out the part that the grid covers, because tilt and form are
         # properties of the whole scan.
-        return place_of(level(scan, self.detrend), self.place)
+        return place_of(noted(level(scan, self.detrend)), self.place)
 
     def surface(self, grid: Grid | None, folder: Path, factor: int = 1) -> Surface:
         """Make the roughness on cells `factor` times smaller than those of `grid`.

@@ -85,7 +85,7 @@ def run_with_progress(
                 progress=lambda words: bar.update(task, advance=1, description=words),
                 warn=warn,
             )
-        print_numbers(_curve(folder.rows))
+        print_numbers(_curve(folder.rows, wanted=read.total_error))
         many = f" of {runs(read)} curves" if runs(read) > 1 else ""
         residual = summary["diagnostics"]["largest_residual"]
         answers.print(
@@ -95,7 +95,9 @@ def run_with_progress(
         )
         if attraction := in_words(summary.get("sticking", {}), folder.rows):
             say(attraction)
-        if advice := _advice(read, folder.rows, summary["diagnostics"].get("material_advice", "")):
+        if why := _elastic_error(folder.rows):
+            say(why)
+        if advice := _advice(read, folder.rows, summary):
             say(advice)
         drawn = {path.name for path in _draw(out, figures)}
     except KeyboardInterrupt:
@@ -114,16 +116,32 @@ def run_with_progress(
     return summary
 
 
-def _advice(case: Case, rows: list[dict[str, float]], material: str) -> str:
+def _elastic_error(rows: list[dict[str, float]]) -> str:
+    """Say why the error of the model is not 0 at depths where nothing yields; "" without any."""
+    elastic = (row for row in rows if row.get("plastic_work_J") == 0)
+    if not any(row.get("model_error", 0) > 0 and row["restitution"] == 1 for row in elastic):
+        return ""
+    return (
+        "± model is above 0 although nothing yields: a real contact loses energy from 1.6 Y on, up "
+        "to 7 % of COR, but a constant yield pressure lets it yield only at 2.8 Y."
+    )
+
+
+def _advice(case: Case, rows: list[dict[str, float]], summary: dict[str, Any]) -> str:
     """Name the largest part of a large total error and its remedy; empty if the error is small.
 
-    `material` names the library values that widen the material error most.
+    Also empty if a warning recommends cleaning the scan, because no finer grid helps before.
     """
+    from restitution.runs.messages import CLEANING
+
     if case.periodic or not any(row["total_error"] >= _LARGE for row in rows):
+        return ""
+    if any(f"{CLEANING} = " in warning for warning in summary["warnings"]):
         return ""
     from restitution.results.total_error import largest_part
 
     part = largest_part(rows)
+    material = summary["diagnostics"].get("material_advice", "")
     if part == "surface_scatter":
         n = case.realisations
         remedy = (
@@ -170,7 +188,13 @@ def _draw(out: Path, figures: FigureFormat) -> list[Path]:
     return write_figures(out, run_figures(RunResults(out).dataset), figures.value)
 
 
-def _curve(rows: list[dict[str, float]]) -> Table:
+def _with_error(cor: float, error: float, wanted: bool) -> str:
+    """COR with its total error; without it if the case does not ask for the total error."""
+    known = "unknown" if math.isnan(error) else f"{error:.4f}"
+    return f"{cor:.4f} ± {known}" if wanted or not math.isnan(error) else f"{cor:.4f}"
+
+
+def _curve(rows: list[dict[str, float]], *, wanted: bool) -> Table:
     from restitution.cli.console import table_of_numbers
 
     if "nominal_pressure_Pa" in rows[0]:
@@ -181,13 +205,15 @@ def _curve(rows: list[dict[str, float]]) -> Table:
         "depth (nm)", "force (N)", "V (m/s)", "COR", "± model", *pull_off, "nodes", "resolved"
     )
     for row in rows:
-        velocity, error = row["impact_velocity_m_per_s"], row["total_error"]
+        velocity, cor, error = (
+            row[name] for name in ("impact_velocity_m_per_s", "restitution", "total_error")
+        )
         table.add_row(
             f"{1e9 * row['max_indentation_m']:.4g}",
             f"{row['force_N']:.4g}",
-            "-" if math.isnan(velocity) else f"{velocity:.4g}",
-            f"{row['restitution']:.4f}" + ("" if math.isnan(error) else f" ± {error:.4f}"),
-            f"{row['model_error']:.3f}",
+            "–" if math.isnan(velocity) else f"{velocity:.4g}",
+            "–" if math.isnan(cor) else _with_error(cor, error, wanted),
+            "–" if math.isnan(row["model_error"]) else f"{row['model_error']:.3f}",
             *([_force(row)] if adhesive else []),
             f"{row['contact_nodes']:.0f}",
             "yes" if row["resolved"] else "no",

@@ -1,9 +1,10 @@
 """`restitution surface`: describe the generated or measured surface of a case."""
 
+import math
 from collections.abc import Iterator
 
 import typer
-from rich.table import Table
+from rich.table import Column, Table
 
 from restitution.cli.parameters import CaseFile, FigureFormat, Figures, OutFolder
 from restitution.display import counted, quantity
@@ -20,13 +21,22 @@ def surface(
 
     from restitution.case import needs
     from restitution.case.case_file import naming, read_case
-    from restitution.cli.console import answers, command, errors, say, say_next, say_written, warn
-    from restitution.pages.surface import write_surface_page
+    from restitution.cli.console import (
+        command,
+        errors,
+        print_numbers,
+        say,
+        say_next,
+        say_written,
+        warn,
+    )
+    from restitution.pages.surface import PARAMETERS, scaled_parameter, write_surface_page
     from restitution.plots.static import write_figure
     from restitution.plots.surface import surface_map
     from restitution.results.interruption import hold_signals
     from restitution.results.locking import locked
     from restitution.results.writer import ResultsFolder, write_checksums, write_json, write_netcdf
+    from restitution.runs.messages import surface_warnings
     from restitution.surfaces import describe
     from restitution.surfaces.texture import texture
 
@@ -38,6 +48,7 @@ def surface(
     ResultsFolder(out)
     with errors.status("describing the surface"):
         statistics = describe(made) | texture(made)
+        warnings = surface_warnings(made, math.inf if read.periodic else read.pair().radius)
     hx, hy = made.grid.spacing
     provenance = {**made.provenance, "spacing_x_m": hx, "spacing_y_m": hy}
     labels = {"units": "m", "long_name": "composite roughness"}
@@ -49,19 +60,24 @@ def surface(
     with errors.status("writing the results"):
         with hold_signals():
             write_netcdf(out / "surface.nc", dataset)
-            write_json(out / "statistics.json", {**statistics, "provenance": provenance})
+            content = {**statistics, "warnings": warnings, "provenance": provenance}
+            write_json(out / "statistics.json", content)
             write_checksums(out, ["statistics.json", "surface.nc"])
         picture = write_figure(out / "surface", surface_map(made, read.title), figures.value)
         write_surface_page(out)
 
-    table = Table(box=None, show_header=False)
-    for key, value in statistics.items():
-        table.add_row(key, "-" if value is None else f"{value:.5g}")
-    answers.print(table)
+    table = Table("", Column(justify="right"), "", box=None, show_header=False)
+    for key, (name, _, unit, *_) in PARAMETERS.items():
+        value = scaled_parameter(key, statistics)
+        shown = "-" if value is None else f"{value:.4g} {unit}"
+        if value is not None and unit in ("nm", "µm"):
+            shown = quantity(statistics[key], "m")  # the range of lengths is wide
+        table.add_row(name, *shown.split(" ", 1))
+    print_numbers(table)
     for line in _about_scans(provenance):
         say(line)
-    if "notice" in provenance:
-        warn(str(provenance["notice"]))
+    for warning in warnings:
+        warn(warning)
     say_written(out, ["surface.nc", "statistics.json", picture.name, "surface.html"])
     say_next(command("run", case, "-o", "OUT"))
 

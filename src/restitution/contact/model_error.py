@@ -58,7 +58,8 @@ def model_error(state: State, restitution: float) -> float:
     range of adhesion.
     """
     parts = _plasticity_error(state, restitution), _range_error(state, restitution)
-    return math.hypot(*parts) if all(parts) else max(parts)
+    error = math.hypot(*parts) if all(parts) else max(parts)
+    return min(error, max(restitution, 1 - restitution))  # COR lies between 0 and 1
 
 
 def hysteresis_ratio(tabor: float) -> float:

@@ -100,7 +100,9 @@ class Particle:
 
     def __str__(self) -> str:
         """Name and size, for messages and comments."""
-        size = "flat" if self.radius is None else f"R = {quantity(self.radius, 'm')}"
+        # "um", because exports contain this text, and some DEM codes warn of non-ASCII comments.
+        radius = quantity(self.radius, "m").replace("µ", "u")
+        size = "flat" if self.radius is None else f"R = {radius}"
         return f"{one_line(self.name)} ({size})"
 
 

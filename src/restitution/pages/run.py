@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from restitution.case.omissions import default_yield
 from restitution.contact.checks.resolution import NODES_PER_PATCH
@@ -75,6 +76,12 @@ def _in_words(run: RunResults) -> str:
     return f"{what}; {nx} × {ny} nodes, spacing {1e6 * h:.4g} µm{ended}"
 
 
+def _span(values: NDArray[np.float64], digits: str) -> str:
+    """The smallest and the largest known value in words; "" if none is known."""
+    known = values[~np.isnan(values)]
+    return f" from {known.min():{digits}} to {known.max():{digits}}" if known.size else ""
+
+
 def _restitution(results: xr.Dataset, abscissa: Abscissa) -> Drawing:
     words, unit = abscissa.axis.label, abscissa.axis.unit
     x = abscissa.scale * results[abscissa.variable].values
@@ -86,8 +93,7 @@ def _restitution(results: xr.Dataset, abscissa: Abscissa) -> Drawing:
     return Drawing(
         f"Restitution against {words}",
         restitution_figure(results, abscissa),
-        f"Coefficient of restitution from {np.nanmin(cor):.3f} to {np.nanmax(cor):.3f} against "
-        f"{words} from {np.nanmin(x):.3g} to {np.nanmax(x):.3g} {unit}",
+        f"Coefficient of restitution{_span(cor, '.3f')} against {words}{_span(x, '.3g')} {unit}",
         f"Open markers ({few} of {cor.size}): not resolved by the grid, because at least half of "
         f"the contact is in patches of fewer than {NODES_PER_PATCH} nodes.",
         Table(

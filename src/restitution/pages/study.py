@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 from restitution.case.case_file import parse_toml
@@ -86,7 +87,7 @@ def _restitution(drawn: list[StoredCase], swept: list[str], abscissa: Abscissa) 
 def _cases(cases: list[StoredCase], swept: list[str]) -> Table:
     rows: list[list[Cell]] = []
     for case in cases:
-        cor = [row["restitution"] for row in case.curve.rows]
+        cor = [e for row in case.curve.rows if not math.isnan(e := row["restitution"])]
         resolved = int(sum(row["resolved"] for row in case.curve.rows))
         rows.append(
             [
@@ -95,7 +96,7 @@ def _cases(cases: list[StoredCase], swept: list[str]) -> Table:
                 case.status,
                 min(cor, default=None),
                 max(cor, default=None),
-                f"{resolved} of {len(cor)}",
+                f"{resolved} of {len(case.curve.rows)}",
                 case.reason,
             ]
         )

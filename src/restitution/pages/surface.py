@@ -29,7 +29,7 @@ _LAY = 0.5  # texture aspect ratio below which a surface has a lay
 
 # For each parameter: name, clause of ISO 25178-2:2012, unit in the table, factor from SI to this
 # unit, and the key under which the provenance of the surface holds the requested value.
-_PARAMETERS: dict[str, tuple[str, str, str, float, str]] = {
+PARAMETERS: dict[str, tuple[str, str, str, float, str]] = {
     "Sq_m": ("root mean square height Sq", "4.1.1", "nm", 1e9, "rms_m"),
     "Ssk": ("skewness Ssk", "4.1.2", "", 1, "skewness"),
     "Sku": ("kurtosis Sku", "4.1.3", "", 1, "kurtosis"),
@@ -81,7 +81,7 @@ def write_surface_page(out: Path) -> Path:
             f"edge lengths {size} µm; "
             f"{provenance.get('kind') or provenance.get('source', 'surface')}"
         ],
-        warnings=[str(provenance["notice"])] if "notice" in provenance else [],
+        warnings=list(statistics.get("warnings", [])),
         parts=[
             _map(surface),
             _parameters(statistics, provenance),
@@ -117,18 +117,23 @@ def _map(surface: Surface) -> Drawing:
     )
 
 
+def scaled_parameter(key: str, statistics: Mapping[str, Any]) -> float | None:
+    """The parameter `key` of `statistics` in its unit of `PARAMETERS`; None if it is undefined."""
+    if key == "lay_deg" and (statistics.get("Str") or 1.0) >= _LAY:
+        return None  # the direction of a surface without a lay is arbitrary
+    return _scaled(statistics.get(key), PARAMETERS[key][3])
+
+
 def _parameters(statistics: Mapping[str, Any], provenance: Mapping[str, Any]) -> Table:
     rows: list[list[Cell]] = []
-    for key, (name, clause, unit, factor, asked) in _PARAMETERS.items():
-        value, wanted = statistics.get(key), provenance.get(asked)
+    for key, (name, clause, unit, factor, asked) in PARAMETERS.items():
+        value, wanted = scaled_parameter(key, statistics), provenance.get(asked)
         if key == "lay_deg":
-            # The direction of a surface without a lay is arbitrary.
-            value = value if (statistics.get("Str") or 1.0) < _LAY else None
             wanted = None if value is None or wanted is None else math.degrees(float(wanted))
         rows.append(
             [
                 name,
-                _scaled(value, factor),
+                value,
                 unit,
                 clause,
                 _scaled(wanted, factor),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -226,8 +227,9 @@ class RunResults:
         except OutputError as error:
             return [str(error)]
         depths = [row["max_indentation_m"] for row in rows]
-        e = [row["restitution"] for row in rows]
-        span = f" to {quantity(max(depths), 'm')}, COR {min(e):.4f} to {max(e):.4f}" if e else ""
+        e = [e for row in rows if not math.isnan(e := row["restitution"])]
+        span = f" to {quantity(max(depths), 'm')}" if rows else ""
+        span += f", COR {min(e):.4f} to {max(e):.4f}" if e else ""
         warned = counted(len(summary["warnings"]), "warning")
         return [
             f'"{summary["title"]}", {summary["status"]}, {warned}; {self.folder}',

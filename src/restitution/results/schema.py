@@ -44,7 +44,14 @@ COLUMNS = {
     "plastic_work_J": _magnitude("plastic_work", "work dissipated by yielding", unit="J"),
     "loading_work_J": Column("loading_work", "J", "work of loading"),
     "unloading_work_J": Column("unloading_work", "J", "work returned until separation"),
-    "restitution": Column("restitution", "1", "coefficient of restitution", low=0.0, high=1.0),
+    "restitution": Column(
+        "restitution",
+        "1",
+        "coefficient of restitution; empty if no impact has this maximum indentation",
+        low=0.0,
+        high=1.0,
+        optional=True,
+    ),
     "impact_velocity_m_per_s": _magnitude(
         "impact_velocity", "impact velocity for this indentation", unit="m s-1", optional=True
     ),
@@ -68,7 +75,9 @@ COLUMNS = {
     "separation_indentation_m": Column(
         "separation_indentation", "m", "indentation at separation", optional=True
     ),
-    "restitution_error": _magnitude("restitution_error", "error of COR due to the solver"),
+    "restitution_error": _magnitude(
+        "restitution_error", "error of COR due to the solver", optional=True
+    ),
     "sticks": Column("sticks", "1", "the bodies stick: unloading returns no work", flag=True),
     "adhesion_resolved": Column(
         "adhesion_resolved",
@@ -102,7 +111,9 @@ COLUMNS = {
         "total_error", "total error of restitution: the errors above, in quadrature", optional=True
     ),
     "model_error": _magnitude(
-        "model_error", "error of restitution due to the models of plasticity and adhesion"
+        "model_error",
+        "error of restitution due to the models of plasticity and adhesion",
+        optional=True,
     ),
     "refine": Column(
         "refinement",

@@ -82,11 +82,16 @@ def read_numbers(
 
     Raises `OutputError` if a cell holds a value that no run writes.
     """
-    return {
+    numbers = {
         name: _number(path, f"line {line}: {name}", column, cells[name])
         for name, column in columns.items()
         if name in cells
     }
+    if numbers.get("loading_work_J", 0.0) > 0:  # an impact, which has a COR
+        for name in ("restitution", "restitution_error", "model_error"):
+            if math.isnan(numbers.get(name, 0.0)):
+                raise damaged(path, f"line {line}: {name} has no value")
+    return numbers
 
 
 def _number(path: Path, where: str, column: Column, text: str) -> float:

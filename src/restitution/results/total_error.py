@@ -17,6 +17,11 @@ def total(row: Mapping[str, float]) -> float:
     return min(math.hypot(*known), max(row["restitution"], 1 - row["restitution"]))
 
 
+def largest(rows: Sequence[Mapping[str, float]], name: str) -> float | None:
+    """Largest value of the column `name`; None if no row has one."""
+    return max((row[name] for row in rows if not math.isnan(row[name])), default=None)
+
+
 def largest_part(rows: Sequence[Mapping[str, float]]) -> str:
     """Name of the part of the total error with the largest root mean square over the rows.
 

@@ -62,6 +62,9 @@ def curve_row(
     """
     patches = state.patch_sizes()
     median = median_patch(patches)
+    # Without positive work of loading, no impact has its deepest point here.
+    impact = collision.loading_work > 0
+    cor = collision.restitution if impact else math.nan
     values = (
         state.indentation + touch,
         state.force,
@@ -70,7 +73,7 @@ def curve_row(
         state.plastic_work,
         collision.loading_work,
         collision.unloading_work,
-        collision.restitution,
+        cor,
         math.nan if collision.impact_velocity is None else collision.impact_velocity,
         state.contact_nodes,
         patches.size,
@@ -80,13 +83,13 @@ def curve_row(
         collision.pull_off_force,
         pull_off_error(state, collision.pull_off_force),
         collision.separation_indentation + touch,
-        collision.restitution_error,
-        collision.sticks,
+        min(collision.restitution_error, max(cor, 1 - cor)) if impact else math.nan,
+        collision.sticks and impact,
         resolves_adhesion(state),
         median,
         resolves_contact(state),
         *(math.nan,) * 4,  # filled in by `runs.error_budget`
-        model_error(state, collision.restitution),
+        model_error(state, cor) if impact else math.nan,
         refine,
     )
     return dict(zip(COLUMNS, values, strict=True))

@@ -14,7 +14,7 @@ from restitution.contact.checks.resolution import unresolved_patches
 from restitution.errors import RestitutionError
 from restitution.results.reader import RunResults
 from restitution.results.schema import COLUMNS
-from restitution.results.total_error import total
+from restitution.results.total_error import largest, total
 from restitution.results.writer import (
     ResultsFolder,
     curve_variables,
@@ -38,6 +38,14 @@ from restitution.runs.periodic import run_periodic
 from restitution.runs.refinement import settled
 from restitution.runs.run import run_case
 
+# Columns that combine only surfaces on which an impact has this maximum indentation.
+_OF_IMPACTS = (
+    "restitution",
+    "impact_velocity_m_per_s",
+    "restitution_error",
+    "model_error",
+    "sticks",
+)
 # Columns of an ensemble's curve that are not means, and the functions that combine the values of
 # the surfaces. Flags are not listed: they are true if they are true for all surfaces.
 _WORST: dict[str, Callable[[list[float]], float]] = {
@@ -214,7 +222,7 @@ class _Ensemble:
                 )
             },
             "diagnostics": {
-                f"largest_{name}": max(row[name] for row in whole)
+                f"largest_{name}": largest(whole, name)
                 for name in ("residual", "restitution_error")
             }
             | total_error_summary(self.case, self.out.rows, self.log.material_parts),
@@ -259,16 +267,19 @@ def mean_rows(curves: Sequence[Sequence[Row]], errors: Sequence[Row] = ()) -> li
     rows = []
     for depth in range(max(map(len, curves), default=0)):
         of = [curve[depth] for curve in curves if len(curve) > depth]
+        # Surfaces on which an impact has this maximum indentation; all if there is none.
+        met = [surface for surface in of if not math.isnan(surface["restitution"])] or of
         row: Row = {}
         for name, column in COLUMNS.items():
-            values = [surface[name] for surface in of]
+            values = [surface[name] for surface in (met if name in _OF_IMPACTS else of)]
             row[name] = all(values) if column.flag else float(_WORST.get(name, np.mean)(values))
-        restitution = [surface["restitution"] for surface in of]
-        n = len(of)
+        restitution = [surface["restitution"] for surface in met]
+        n = len(met)
         std = _deviation(restitution)
-        half = half_interval(n) * std
-        half_pull_off = half_interval(n) * _deviation([each["pull_off_force_N"] for each in of])
-        row["realisations"] = n
+        interval = half_interval(n) if n > 1 else math.nan
+        half = interval * std
+        half_pull_off = interval * _deviation([surface["pull_off_force_N"] for surface in met])
+        row["realisations"] = len(of)
         row["restitution_std"] = std
         row["restitution_low"] = max(row["restitution"] - half, 0.0)
         row["restitution_high"] = min(row["restitution"] + half, 1.0)

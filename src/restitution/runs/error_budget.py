@@ -48,7 +48,7 @@ import numpy as np
 
 from restitution.case.case import Case
 from restitution.display import counted
-from restitution.results.total_error import total
+from restitution.results.total_error import largest, total
 from restitution.runs.attraction import add_pull_off_errors
 from restitution.runs.companions import SURFACES, Array, Companions, half_interval
 from restitution.runs.log import Say, ignore
@@ -321,7 +321,7 @@ def total_error_summary(
     values = as_rows(parts)
     return {
         "largest_total_error": max(known, default=None),
-        "largest_model_error": max((row["model_error"] for row in rows), default=None),
+        "largest_model_error": largest(rows, "model_error"),
         "total_error_includes": ", ".join(included(case)) if known else "",
         "total_error_does_not_include": NOT_INCLUDED,
         **({"material_errors": values, "material_advice": advice(values)} if values else {}),

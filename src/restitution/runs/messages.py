@@ -16,9 +16,11 @@ from restitution.contact.checks.resolution import (
     divisions,
     predicted_radius,
 )
+from restitution.contact.checks.scans import scan_findings, too_steep
 from restitution.contact.cohesive import needed_spacing
 from restitution.contact.contact import Contact
 from restitution.contact.model_error import hysteresis_ratio
+from restitution.display import counted, quantity
 from restitution.errors import (
     CaseError,
     DomainError,
@@ -26,6 +28,7 @@ from restitution.errors import (
     RestitutionError,
     SurfaceError,
 )
+from restitution.surfaces import Surface
 from restitution.theory import JKR
 
 _ERRORS: dict[Code, type[RestitutionError]] = {
@@ -33,6 +36,8 @@ _ERRORS: dict[Code, type[RestitutionError]] = {
     "contact-beyond-radius": CaseError,
     "pixel-above-contact": SurfaceError,
     "range-unresolved": CaseError,
+    "impossible-slope": SurfaceError,
+    "spikes": SurfaceError,
 }
 # `no_range` divides the energy that adhesion dissipates between smooth bodies by the prediction of
 # JKR for this energy. It warns only if the ratio is at most this value.
@@ -40,6 +45,7 @@ _NEARLY_JKR = 0.9
 # A run will fail if the predicted contact radius is larger than this factor times half the width of
 # the grid.
 _FAR_BEYOND = 2.0
+CLEANING = "roughness.outliers"  # key that removes spikes
 _KEYS = {"force": "load", "velocity": "impact"}  # argument of a solver: key of the case file
 # How to avoid a contact that is too large, for each table that prescribes the depths.
 _STOPS = {
@@ -63,6 +69,19 @@ def input_warnings(
     `prescribed` is the table of the case file that prescribes the depths.
     """
     return [message(found, prescribed) for found in doubtful(contact, indentation)]
+
+
+def surface_warnings(surface: Surface, reduced_radius: float = math.inf) -> list[str]:
+    """Return a warning for each doubtful property of the heights of `surface`.
+
+    `reduced_radius` is the reduced radius R* (m) of the bodies.
+    """
+    findings = scan_findings(surface, reduced_radius)
+    steep = too_steep(surface)
+    if steep is not None and steep.code == "impossible-slope":
+        findings = [steep if found.code == "steep-surface" else found for found in findings]
+    notice = surface.provenance.get("notice")
+    return [*map(message, findings), *([] if notice is None else [str(notice)])]
 
 
 def failure_at_edge(contact: Contact, indentation: float, prescribed: str) -> str | None:
@@ -204,10 +223,28 @@ def message(found: Finding, prescribed: str = "indentation") -> str:
                 f"the grid spacing {_um(found['spacing'])} is finer than the scan's pixel "
                 f"{_um(found['pixel'])}: roughness below the pixel is missing; use a finer scan"
             )
+        case "spikes":
+            return (
+                f"{found['file']}: {counted(found['count'], 'spike')} of up to "
+                f"{quantity(found['height'], 'm')}: {CLEANING} = {found['threshold']:g} replaces "
+                "spikes by their surroundings"
+            )
         case "tilted-scan":
+            remedy = '"curvature"' if found["curved"] else '"tilt" or "curvature"'
             return (
                 f"{found['file']}: the scan is tilted (a plane explains {found['explained']:.0%} "
-                'of the variance of its heights): set roughness.detrend = "tilt" or "curvature"'
+                f"of the variance of its heights): set roughness.detrend = {remedy}"
+            )
+        case "curved-scan":
+            return _curved(found)
+        case "impossible-slope":
+            keys = "the unit of roughness.rms and the lengths of its waves"
+            if found["file"]:
+                keys = f"the unit of the heights in {found['file']} and roughness.size"
+            return (
+                f"roughness: the rms slope is {found['slope']:.3g}, and half-space theory means "
+                f"nothing above {found['limit']:g} (real surfaces have slopes below 2): check "
+                f"{keys}; heights in nm read as um are 1000 times too large"
             )
         case "steep-surface":
             return (
@@ -256,6 +293,22 @@ def message(found: Finding, prescribed: str = "indentation") -> str:
                     "(roughness.shortest), or use a smaller grid.spacing"
                 )
             )
+
+
+def _curved(found: Finding) -> str:
+    """Message for a curved scan."""
+    radius, whole = found["radius"], found["reduced_radius"]
+    form = "hollow" if radius < 0 else "sphere"
+    effect = (
+        "only a part of it would touch a flat body"
+        if math.isinf(whole)
+        else f"this adds to the shape of the particles, which R* = {quantity(whole, 'm')} contains"
+    )
+    return (
+        f"{found['file']}: the scan is curved like a {form} with a radius of "
+        f"{quantity(abs(radius), 'm')} (which explains {found['explained']:.0%} of the variance of "
+        f'its heights), and {effect}: set roughness.detrend = "curvature"'
+    )
 
 
 def _edge_advice(found: Finding, prescribed: str) -> str:

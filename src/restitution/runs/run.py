@@ -28,6 +28,7 @@ from restitution.numerics.kernels import instruction_set
 from restitution.results.interruption import hold_signals
 from restitution.results.maps import DepthMaps, write_maps
 from restitution.results.schema import COLUMNS
+from restitution.results.total_error import largest
 from restitution.results.writer import (
     ResultsFolder,
     case_attributes,
@@ -283,7 +284,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> d
         "diagnostics": {
             "largest_residual": max(row["residual"] for row in out.rows),
             "largest_loading_work_error": max(run.loading_work_errors),
-            "largest_restitution_error": max(row["restitution_error"] for row in out.rows),
+            "largest_restitution_error": largest(out.rows, "restitution_error"),
             **total_error_summary(case, out.rows, run.material_parts),
             "unloading_checks": run.unloading_checks,
         },

@@ -12,7 +12,7 @@ from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.surfaces.fill import fill_harmonically
 from restitution.surfaces.level import level
-from restitution.surfaces.surface import Surface
+from restitution.surfaces.surface import Array, Surface
 
 Range = tuple[float, float]
 
@@ -98,13 +98,11 @@ def remove_outliers(surface: Surface, threshold: float) -> Surface:
     Raises:
         SurfaceError: The threshold is not positive, or more than 10 % of the pixels are outliers.
     """
-    from scipy.ndimage import median_filter
-
     if not (math.isfinite(threshold) and threshold > 0):
         raise SurfaceError(f"threshold: {threshold:g} is not a positive number")
-    height, level_height = surface.height, level(surface, "curvature").height
-    step = np.abs(level_height - median_filter(level_height, _NEIGHBOURHOOD, mode="reflect"))
-    deviation = _SIGMA * float(np.median(step))
+    height = surface.height
+    signed, deviation, _ = local_steps(surface)
+    step = np.abs(signed)
     # If `deviation` is zero, at least half of the pixels equal their local median. A threshold in
     # standard deviations is then meaningless, so no pixel counts as an outlier.
     out = step > threshold * deviation if deviation > 0 else np.zeros(height.shape, bool)
@@ -125,6 +123,18 @@ def remove_outliers(surface: Surface, threshold: float) -> Surface:
             "outlier_largest_step_m": float(step[out].max()) if count else 0.0,
         },
     )
+
+
+def local_steps(surface: Surface) -> tuple[Array, float, Array]:
+    """Heights minus their local median, the standard deviation of these steps, and the heights (m).
+
+    The least-squares paraboloid is subtracted first (see `remove_outliers`).
+    """
+    from scipy.ndimage import median_filter
+
+    height = level(surface, "curvature").height
+    step = height - median_filter(height, _NEIGHBOURHOOD, mode="reflect")
+    return step, _SIGMA * float(np.median(np.abs(step))), height
 
 
 def _um(low: float, high: float) -> str:

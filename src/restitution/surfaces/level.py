@@ -68,14 +68,14 @@ def _least_squares_form(height: Array, degree: int) -> Array:
     On a regular grid the products of orthonormal polynomials along x and y are orthonormal. So each
     coefficient is a scalar product, and no least-squares matrix with a row per pixel is needed.
     """
-    P, Q = (_orthonormal_polynomials(n, degree) for n in height.shape)
+    P, Q = (orthonormal_polynomials(n, degree) for n in height.shape)
     coefficients = P.T @ height @ Q
     power_x, power_y = np.indices(coefficients.shape)
     coefficients[power_x + power_y > degree] = 0.0
     return np.asarray(P @ coefficients @ Q.T)
 
 
-def _orthonormal_polynomials(n: int, degree: int) -> Array:
+def orthonormal_polynomials(n: int, degree: int) -> Array:
     """Polynomials of degree 0 to `degree` (at most n − 1) on n equidistant points, as columns."""
     s = np.linspace(-1.0, 1.0, n) if n > 1 else np.zeros(1)
     return np.linalg.qr(np.vander(s, min(degree + 1, n), increasing=True)).Q

@@ -13,15 +13,13 @@ from restitution.contact.checks.resolution import (
     predicted_radius,
     resolution_findings,
 )
+from restitution.contact.checks.scans import scan_findings, too_steep
 from restitution.contact.cohesive import needed_spacing, resolves_range
 from restitution.contact.contact import Contact
-from restitution.surfaces import level, rms_slope
 from restitution.theory import Hertz, Kendall
 
 # Limits beyond which an input is doubtful.
-_TILTED = 0.5  # fraction of the variance of the heights that a plane explains
 _OBLONG = 0.01  # relative difference between the two edge lengths of a pixel
-_STEEP = 0.5  # rms slope beyond which small-slope theory is inaccurate
 # Plausible range of p/E*, where p is the pressure of a fully plastic contact. The lower limit
 # belongs to very soft metals, the upper limit to the ideal strength of solids.
 _PRESSURES = (1e-5, 0.3)
@@ -42,17 +40,20 @@ def impossible(contact: Contact, indentation: float) -> Finding | None:
       point above the mean (m);
     * `contact-beyond-radius`: predicted contact `radius`, `indentation`, `reduced_radius` (m);
     * `pixel-above-contact`: see `coarse_scan`;
+    * `impossible-slope`, `spikes`: see `too_steep`;
     * `range-unresolved`: `spacing` and `needed` spacing (m) of a cohesive contact, and whether
       the contact is `periodic`.
 
-    Flat bodies have no radius, so only `range-unresolved` applies to a periodic contact.
+    Flat bodies have no radius, so only slopes and `range-unresolved` apply to a periodic contact.
     """
     if contact.periodic:
-        return _coarse_range(contact)
+        return too_steep(contact.surface) or _coarse_range(contact)
     pair, height = contact.pair, contact.surface.height
     radius = min(pair.first.radius, pair.second.radius)
     if height.size and (peak := float(height.max() - height.mean())) >= radius:
         return Finding("roughness-above-radius", {"radius": radius, "peak": peak})
+    if steep := too_steep(contact.surface):
+        return steep
     predicted = predicted_radius(pair, indentation, contact.hardness)
     if predicted > pair.radius:
         return Finding(
@@ -65,14 +66,11 @@ def impossible(contact: Contact, indentation: float) -> Finding | None:
 def doubtful(contact: Contact, indentation: float) -> list[Finding]:
     """Find reasons to doubt the result of loading `contact` to `indentation` (m).
 
-    The result contains the findings of `resolution_findings` and the following ones. Each code is
-    followed by the names of its values:
+    The result contains the findings of `resolution_findings` and `scan_findings`, and the following
+    ones. Each code is followed by the names of its values:
 
-    * `tilted-scan`: `file`, and `explained`, the fraction of the height variance that a plane
-      explains;
     * `edge-predicted`: smallest `gap` on the edge of the grid at first touch (m), and the values of
       `edge_values`;
-    * `steep-surface`: rms `slope`, and its `limit`;
     * `unusual-yield-pressure`: `ratio` of the pressure of a fully plastic contact to E*, and the
       usual range of this ratio, `low` to `high`;
     * `oblong-pixels`: `file`, and edges `x` and `y` of a pixel (m);
@@ -84,16 +82,15 @@ def doubtful(contact: Contact, indentation: float) -> list[Finding]:
     """
     periodic = contact.periodic
     checks = (
-        _tilt(contact),
         None if periodic else _edge(contact, indentation),
-        _steepness(contact),
         _yield_pressure(contact),
         _oblong(contact),
         _coarse_grid(contact),
         _made_up(contact),
     )
     by_radius = [] if periodic else resolution_findings(contact, indentation)
-    return by_radius + [found for found in checks if found]
+    heights = scan_findings(contact.surface, contact.pair.radius)
+    return by_radius + heights + [found for found in checks if found]
 
 
 def _coarse_range(contact: Contact) -> Finding | None:
@@ -107,20 +104,6 @@ def _coarse_range(contact: Contact) -> Finding | None:
             "periodic": contact.periodic,
         },
     )
-
-
-def _tilt(contact: Contact) -> Finding | None:
-    surface = contact.surface
-    # For a sum of surfaces, the provenance stores the levelling of each summand in a separate key.
-    levelled = {value for key, value in surface.provenance.items() if key.endswith("levelling")}
-    if not levelled & {"none", "center"}:
-        return None
-    variance = float(np.var(surface.height))
-    explained = 1 - float(np.var(level(surface, "tilt").height)) / variance if variance else 0.0
-    if explained <= _TILTED:
-        return None
-    file = surface.provenance.get("file", "the surface")
-    return Finding("tilted-scan", {"file": file, "explained": explained})
 
 
 def _edge(contact: Contact, indentation: float) -> Finding | None:
@@ -160,12 +143,6 @@ def _closed_gap(contact: Contact, indentation: float, distance: float) -> float:
     force = min(elastic, math.pi * radius**2 * p_y)
     share = max(_DISPLACED - float(np.std(contact.surface.height)) / indentation, 0.0)
     return deeper - share * force / (math.pi * E_star * distance)
-
-
-def _steepness(contact: Contact) -> Finding | None:
-    slope = rms_slope(contact.surface)
-    values = {"slope": slope, "limit": _STEEP}
-    return None if slope <= _STEEP else Finding("steep-surface", values)
 
 
 def _yield_pressure(contact: Contact) -> Finding | None:

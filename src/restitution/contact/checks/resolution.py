@@ -174,7 +174,7 @@ def resolution_findings(contact: Contact, indentation: float) -> list[Finding]:
       `whole_scan`, whether the grid covers a whole scan;
     * `few-nodes`: `radius` (m), and `spacing` (m), the larger one of grid spacing and pixel;
     * `no-half-space`: `radius`, `reduced_radius` (m), and the `limit` of their ratio;
-    * `finer-than-scan`: `spacing`, `pixel` (m).
+    * `finer-than-scan`: `spacing` before refinement, `pixel` (m).
     """
     grid, pair = contact.grid, contact.pair
     radius = predicted_radius(pair, indentation, contact.hardness)
@@ -187,7 +187,8 @@ def resolution_findings(contact: Contact, indentation: float) -> list[Finding]:
         "whole_scan": grid_of_a_scan(contact),
     }
     half_space = {"radius": radius, "reduced_radius": pair.radius, "limit": _HALF_SPACE}
-    finest = min(grid.spacing)
+    # A refined grid is meant to be finer than the pixel.
+    finest = min(grid.spacing) * float(contact.surface.provenance.get("refined", 1))
     checks = (
         (radius >= half_width, Finding("contact-beyond-grid", beyond_grid)),
         (

@@ -1,0 +1,116 @@
+"""Checks of the heights of a contact: tilt, curvature and spikes of scans, and steepness."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+
+from restitution.contact.checks.finding import Finding
+from restitution.surfaces import Surface, rms_slope
+from restitution.surfaces.defects import STEEP, Form, Spikes, form_of, spikes_of
+
+_TILTED = 0.5  # fraction of the variance of the heights that a plane explains
+# Fraction of the remaining variance that a sphere explains. On the edge of such a scan, the sphere
+# is at least 1.6 times as deep as Sq of the roughness.
+_CURVED = 0.3
+# The largest fraction that waves of a periodic surface explain is 0.92, that of one wave per axis.
+_CURVED_PERIODIC = 0.95
+# Curvature of the scan times R*. Below the range, the force at a given indentation changes by less
+# than 5 %. Above it, the curvature is that of a texture, not of the particle.
+_DOUBLED = (0.1, 10.0)
+# Rms slope beyond which a contact is refused. Real surfaces have rms slopes of 0.003 to 2. Heights
+# in a wrong unit are at least 1000 times too large, so their slope exceeds 3. Small-slope theory
+# would be meaningless there: the mean flank is steeper than 70 degrees.
+STEEPEST = 3.0
+
+_Provenance = Mapping[str, str | float]
+
+
+def scan_findings(surface: Surface, reduced_radius: float = math.inf) -> list[Finding]:
+    """Find reasons to doubt the heights of `surface`, in contact with the reduced radius R* (m).
+
+    Each code is followed by the names of its values:
+
+    * `spikes`: `file`, `count`, largest `height` (m), and `threshold`, the number of standard
+      deviations beyond which pixels are replaced;
+    * `tilted-scan`: `file`, `explained`, the fraction of the height variance that a plane explains,
+      and whether the scan is `curved`, too;
+    * `curved-scan`: `file`, `explained`, the fraction of the remaining variance that a sphere
+      explains, `radius` of the sphere (m, negative for a hollow), and `reduced_radius` (m);
+    * `steep-surface`: rms `slope`, and its `limit`. It is left out if there are spikes.
+    """
+    found: dict[tuple[object, ...], Finding] = {}
+    for before in _scans(surface.provenance):
+        for finding in _of_scan(surface, before, reduced_radius):
+            found.setdefault((finding.code, finding["file"]), finding)
+    findings = list(found.values())
+    slope = rms_slope(surface)
+    if slope > STEEP and not any(finding.code == "spikes" for finding in findings):
+        findings.append(Finding("steep-surface", {"slope": slope, "limit": STEEP}))
+    return findings
+
+
+def too_steep(surface: Surface) -> Finding | None:
+    """Return `spikes` or `impossible-slope` if slopes are meaningless, otherwise None.
+
+    The values of `impossible-slope` are the rms `slope`, its `limit`, and the `file` of a scan or
+    "". Spikes are reported first, because they may be the reason.
+    """
+    if (slope := rms_slope(surface)) <= STEEPEST:
+        return None
+    spikes = (each for each in scan_findings(surface) if each.code == "spikes")
+    values = {"slope": slope, "limit": STEEPEST, "file": surface.provenance.get("file", "")}
+    return next(spikes, None) or Finding("impossible-slope", values)
+
+
+def _scans(provenance: _Provenance) -> list[str]:
+    """The prefix of the provenance entries of each scan; "" if the surface is one scan."""
+    measured = [key for key, value in provenance.items() if value == "measured"]
+    keys = [key for key in measured if key.endswith("source")]
+    keys += [key for key in provenance if key.endswith("levelling")]
+    return list(dict.fromkeys(key.removesuffix("source").removesuffix("levelling") for key in keys))
+
+
+def _of_scan(surface: Surface, before: str, reduced_radius: float) -> Iterator[Finding]:
+    provenance = surface.provenance
+    file = provenance.get(f"{before}file", provenance.get("file", "the surface"))
+    steps = str(provenance.get(f"{before}levelling", "none")).split(", ")
+    spikes = _spikes(surface, before)
+    if spikes.count:
+        values = {"count": spikes.count, "height": spikes.height, "threshold": spikes.threshold}
+        yield Finding("spikes", {"file": file, **values})
+    if "curvature" in steps:
+        return
+    form = _form(surface, before)
+    curved = _is_curved(form, reduced_radius)
+    if form.tilt > _TILTED and "tilt" not in steps:
+        yield Finding("tilted-scan", {"file": file, "explained": form.tilt, "curved": curved})
+    if curved:
+        values = {"explained": form.curvature, "radius": form.radius}
+        yield Finding("curved-scan", {"file": file, **values, "reduced_radius": reduced_radius})
+
+
+def _is_curved(form: Form, reduced_radius: float) -> bool:
+    if math.isinf(reduced_radius):
+        return form.curvature > _CURVED_PERIODIC
+    low, high = _DOUBLED
+    return form.curvature > _CURVED and low <= reduced_radius / abs(form.radius) <= high
+
+
+def _form(surface: Surface, before: str) -> Form:
+    """Tilt and curvature of the whole scan; of the surface if its provenance lacks them."""
+    if (tilt := surface.provenance.get(f"{before}tilt_share")) is None:
+        return form_of(surface)
+    curvature = surface.provenance.get(f"{before}curvature_share", 0.0)
+    radius = surface.provenance.get(f"{before}curvature_radius_m", math.inf)
+    return Form(float(tilt), float(curvature), float(radius))
+
+
+def _spikes(surface: Surface, before: str) -> Spikes:
+    """Spikes of the whole scan; of the surface if its provenance lacks them."""
+    if (count := surface.provenance.get(f"{before}spikes")) is None:
+        return spikes_of(surface)
+    names = ("spike_height_m", "spike_threshold")
+    return Spikes(
+        int(count), *(float(surface.provenance.get(f"{before}{name}", 0.0)) for name in names)
+    )
