@@ -185,7 +185,7 @@ def _law_of(first=GLASS, second=GLASS, at=1.0, **changes):
             "restitution_error": "numerical error",
         },
         "yield_velocity": 0.001,
-        "sticking_velocity": None,
+        "smooth_sticking_velocity": None,
         "sticks_below": None,
         "points": points,
     }

@@ -47,6 +47,18 @@ def quantity(value: float | None, unit: str) -> str:
     return f"{value / 10.0 ** (step * order):.4g} {_PREFIXES[order]}{unit}"
 
 
+def with_error(value: float, error: float, unit: str) -> str:
+    """Format a value with its error to two digits, and one prefix: "91.6 ± 4.8 mm/s"."""
+    if not (math.isfinite(error) and error > 0 and value != 0):
+        return quantity(value, unit) + (" ± unknown" if math.isnan(error) else "")
+    number, prefixed = quantity(value, unit).split()
+    scale = value / float(number)
+    digits = 1 - math.floor(math.log10(error / scale))
+    if digits < 0:
+        return f"{number} ± {error / scale:.2g} {prefixed}"
+    return f"{value / scale:.{digits}f} ± {error / scale:.{digits}f} {prefixed}"
+
+
 def duration(seconds: float) -> str:
     """Format a time for people: "20 s", "3 min", "5 h"."""
     if seconds < 100:

@@ -21,7 +21,7 @@ PARTS = ("mdr.lmp",)  # included by another template
 @pytest.fixture(scope="module")
 def exports(law, points, mixed, on_wall):
     """Every file of every code by name, for several tables of laws."""
-    adhesive = law(work_of_adhesion=0.2, sticking_velocity=0.01)
+    adhesive = law(work_of_adhesion=0.2, smooth_sticking_velocity=0.01)
     several = [found for _, _, found in mixed.pairs()]
     cases = {"fitted": [points], "adhesive": [adhesive], "mixed": several}
     found = {

@@ -99,7 +99,7 @@ def laws(draw, most=14):
         model={},
         conventions=CONVENTIONS,
         yield_velocity=None,
-        sticking_velocity=None,
+        smooth_sticking_velocity=None,
         sticks_below=None,
         points=tuple(draw(one_point(V, mass)) for V in velocities.tolist()),
     )

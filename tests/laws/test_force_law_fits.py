@@ -155,7 +155,7 @@ def test_the_best_of_the_fits_with_a_sticking_velocity_need_not_be_the_one_known
     smooth = ThorntonNing(law().radius, law().contact_modulus, 4e8)
     e = np.sqrt(smooth.restitution(V, mass) ** 2 - (0.012 / V) ** 2)
     force = smooth.loading_force(smooth.indentation_from_velocity(V, mass))
-    found = made(e, force, work_of_adhesion=0.2, sticking_velocity=0.004)
+    found = made(e, force, work_of_adhesion=0.2, smooth_sticking_velocity=0.004)
     by_force, by_restitution = (each.parameters for each in force_law_fits._thornton_ning(found))
     assert by_force["sticking_velocity_m_per_s"] == 0.004
     assert by_restitution["sticking_velocity_m_per_s"] == approx(0.012, rel=1e-3)

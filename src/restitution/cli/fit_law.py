@@ -74,7 +74,7 @@ def _in_words(law: "Law") -> Iterator[str]:
     from restitution.laws.law import LOSS
 
     if law.sticks_below is not None:
-        yield f"sticks below {law.sticks_below:.4g} m/s"
+        yield f"sticks below {law.sticking}"
     if law.fit is None and law.column("restitution").min() > 1 - LOSS:
         yield "COR is 1 at all of these velocities: there is nothing to fit"
     elif law.fit is None:

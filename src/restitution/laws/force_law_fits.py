@@ -125,7 +125,7 @@ def _thornton_ning(law: Law) -> Iterator[FittedLaw]:
 
     source = "C. Thornton, Z. Ning, Powder Technology 99 (1998) 154-162"
     begin = math.log(law.yield_pressure or 0.01 * law.contact_modulus)
-    V_s = law.sticks_below or law.sticking_velocity or 0.0
+    V_s = law.sticks_below or law.smooth_sticking_velocity or 0.0
 
     p_y = math.exp(least_squares_from(forces, [begin])[0])
     yield judged(

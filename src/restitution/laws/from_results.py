@@ -113,7 +113,7 @@ def _law(out: Path, run: RunResults) -> Law:
             restitution_error=_error_includes(summary["diagnostics"], asked=case.total_error),
         ),
         yield_velocity=derived["yield_velocity_m_per_s"],
-        sticking_velocity=derived.get("sticking_velocity_m_per_s"),
+        smooth_sticking_velocity=derived.get("sticking_velocity_m_per_s"),
         sticks_below=None,
         points=tuple(points),
         warnings=tuple(warnings),
@@ -125,7 +125,13 @@ def _law(out: Path, run: RunResults) -> Law:
             f"the pair sticks at every computed velocity (up to {law.highest:.4g} m/s); it may "
             "rebound at higher velocities"
         )
-    return replace(law, sticks_below=law.curve().begins(), warnings=tuple(warnings))
+    sticking = summary.get("sticking", {})
+    return replace(
+        law,
+        sticks_below=law.curve().begins() or sticking.get("sticks_below_m_per_s") or None,
+        sticks_below_error=sticking.get("sticks_below_error_m_per_s"),
+        warnings=tuple(warnings),
+    )
 
 
 def _read(out: Path) -> RunResults:
@@ -170,7 +176,7 @@ def _points(run: RunResults) -> list[Point]:
         velocity, work = row["impact_velocity_m_per_s"], row["loading_work_J"]
         if not velocity > 0 or not work > 0 or (found and velocity <= found[-1].velocity):
             continue
-        pull_off = row["pull_off_force_N"]
+        pull_off, error = row["pull_off_force_N"], row["pull_off_error_N"]
         found.append(
             Point(
                 velocity=velocity,
@@ -181,6 +187,7 @@ def _points(run: RunResults) -> list[Point]:
                 indentation=row["max_indentation_m"],
                 force=row["force_N"],
                 pull_off_force=None if math.isnan(pull_off) else pull_off,
+                pull_off_error=None if math.isnan(error) else error,
                 resolved=bool(row["resolved"]),
             )
         )

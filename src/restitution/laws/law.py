@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import Annotated, Self
+from typing import Annotated, Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,7 +15,7 @@ from pydantic import ConfigDict, Field, TypeAdapter, model_validator
 from pydantic.dataclasses import dataclass as checked_dataclass
 
 from restitution.case.quantities import read_positive
-from restitution.display import counted, quantity, summary_html, summary_text
+from restitution.display import counted, quantity, summary_html, summary_text, with_error
 from restitution.errors import CaseError, DomainError, one_line
 from restitution.laws.interpolation import RatioCurve
 
@@ -124,6 +124,7 @@ class Point:
     indentation: float
     force: float
     pull_off_force: float | None
+    pull_off_error: NotNegative | None = None
     resolved: bool
 
     @model_validator(mode="after")
@@ -228,9 +229,9 @@ class Law:
 
     `radius`, `contact_modulus` and `mass` are R*, E* and m*. `friction` is the coefficient of
     friction of the case, or None; e does not depend on friction. Smooth bodies yield above
-    `yield_velocity`, and smooth elastic bodies stick up to `sticking_velocity`. `sticks_below` is
-    the velocity above which this pair rebounds. It is None if the pair rebounds at every computed
-    velocity, or at none.
+    `yield_velocity`, and smooth elastic bodies stick up to `smooth_sticking_velocity`.
+    `sticks_below` is the velocity above which this pair rebounds, with its error. It is None if the
+    pair sticks at no velocity, or at every computed one.
     """
 
     title: str
@@ -245,14 +246,22 @@ class Law:
     model: dict[str, str]
     conventions: Conventions
     yield_velocity: float | None
-    sticking_velocity: float | None
+    smooth_sticking_velocity: float | None
     sticks_below: float | None
+    sticks_below_error: float | None = None
     points: Annotated[tuple[Point, ...], Field(min_length=1)]
     fit: CompactFit | None = None
     laws: tuple[FittedLaw, ...] = ()
     warnings: tuple[str, ...] = ()
     case: str = ""
     versions: dict[str, str] = field(default_factory=dict)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_older_versions(cls, stored: Any) -> Any:
+        if isinstance(stored, dict) and "sticking_velocity" in stored:
+            stored["smooth_sticking_velocity"] = stored.pop("sticking_velocity")
+        return stored
 
     @model_validator(mode="after")
     def _holds_together(self) -> Self:
@@ -344,6 +353,15 @@ class Law:
         )
 
     @property
+    def sticking(self) -> str:
+        """`sticks_below` with its error, in words."""
+        if self.sticks_below is None:
+            return "unknown"
+        if self.sticks_below_error is None:
+            return quantity(self.sticks_below, "m/s")
+        return with_error(self.sticks_below, self.sticks_below_error, "m/s")
+
+    @property
     def sticks_everywhere(self) -> bool:
         """Whether the pair sticks at every computed velocity."""
         return all(point.ratio <= 0 for point in self.points)
@@ -357,7 +375,7 @@ class Law:
         low, high = quantity(self.lowest, "m/s"), quantity(self.highest, "m/s")
         e = self.column("restitution")
         parts = [
-            f"sticks below {quantity(self.sticks_below, 'm/s')}" if self.sticks_below else "",
+            f"sticks below {self.sticking}" if self.sticks_below else "",
             f"fits: {', '.join(each.name for each in self.laws)}" if self.laws else "not fitted",
             counted(len(self.warnings), "warning") if self.warnings else "",
         ]

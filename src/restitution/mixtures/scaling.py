@@ -79,6 +79,8 @@ class Computed:
         """
         nearest = self.laws[int(np.abs(np.log(self.radii / meeting.radius)).argmin())]
         kappa = nearest.mass / nearest.radius**3
+        slower = (meeting.radius / nearest.radius) ** (2 / 3)
+        slower *= math.sqrt(nearest.mass / meeting.mass)
         how = "computed" if self.has(meeting.radius) else "interpolated in R* at equal W/R*^3"
         law = replace(
             nearest,
@@ -89,16 +91,14 @@ class Computed:
             mass=meeting.mass,
             model={**nearest.model, "pair": how},
             yield_velocity=_scaled(nearest.yield_velocity, math.sqrt(kappa / meeting.kappa)),
-            sticking_velocity=_scaled(
-                nearest.sticking_velocity,
-                (meeting.radius / nearest.radius) ** (2 / 3)
-                * math.sqrt(nearest.mass / meeting.mass),
-            ),
+            smooth_sticking_velocity=_scaled(nearest.smooth_sticking_velocity, slower),
+            sticks_below_error=_scaled(nearest.sticks_below_error, slower),
             points=self._points(meeting),
             fit=None,
             laws=(),
         )
-        law = replace(law, sticks_below=law.curve().begins())
+        below = law.curve().begins() or _scaled(nearest.sticks_below, slower)
+        law = replace(law, sticks_below=None if law.sticks_everywhere else below)
         return replace(law, fit=compact_fit(law))
 
     def _points(self, meeting: Meeting) -> tuple[Point, ...]:

@@ -19,7 +19,7 @@ import numpy as np
 from restitution.case.case import Case
 from restitution.collision import Collision, collide
 from restitution.contact.prescribed_velocity import solve_at_velocity
-from restitution.display import quantity
+from restitution.display import quantity, with_error
 from restitution.errors import RestitutionError
 from restitution.runs.companions import Array, Companions, Curve, half_interval
 
@@ -232,7 +232,7 @@ def _pull_off(row: Row) -> str:
     force, error = row["pull_off_force_N"], row["pull_off_error_N"]
     at = row["impact_velocity_m_per_s"]
     where = "" if math.isnan(at) else f" after {quantity(at, 'm/s')}"
-    return f"{quantity(force, 'N')} ± {quantity(error, 'N')}{where}"
+    return f"{with_error(force, error, 'N')}{where}"
 
 
 def _sticks(known: Mapping[str, Any], rows: Sequence[Row]) -> str:
@@ -244,4 +244,4 @@ def _sticks(known: Mapping[str, Any], rows: Sequence[Row]) -> str:
     velocity, error = known["sticks_below_m_per_s"], known["sticks_below_error_m_per_s"]
     if velocity == 0:
         return f"Sticks at no velocity above {quantity(error, 'm/s')}" if error else "Never sticks"
-    return f"Sticks below {quantity(velocity, 'm/s')} ± {quantity(error, 'm/s')}"
+    return f"Sticks below {with_error(velocity, error, 'm/s')}"
