@@ -55,7 +55,7 @@ def with_error(value: float, error: float, unit: str) -> str:
     scale = value / float(number)
     digits = 1 - math.floor(math.log10(error / scale))
     if digits < 0:
-        return f"{number} ± {error / scale:.2g} {prefixed}"
+        return f"{number} ± {error / scale:.0f} {prefixed}"
     return f"{value / scale:.{digits}f} ± {error / scale:.{digits}f} {prefixed}"
 
 

@@ -80,3 +80,37 @@ def test_a_measured_file_is_relative_to_the_case(cli, case_text, tmp_path, monke
     (tmp_path / "data" / "case.toml").write_text(text)
     monkeypatch.chdir(tmp_path)
     assert cli("check", "data/case.toml")[0] == 0
+
+
+def test_only_the_part_that_is_used_must_be_complete(cli, refused, case_text, tmp_path):
+    height = np.zeros((90, 90))
+    height[:20] = np.nan
+    np.save(tmp_path / "rim.npy", height)
+    line = 'file = "rim.npy"\nsize = ["60 um", "60 um"]\nheight_unit = "nm"\n'
+    (tmp_path / "case.toml").write_text(measured(case_text, line))
+    assert "set roughness.crop = { x = [" in refused("check", tmp_path / "case.toml")
+    grid = 'crop = { x = ["-14 um", "29 um"] }\nextend = "mirror"'
+    (tmp_path / "case.toml").write_text(measured(case_text, line + grid))
+    assert cli("check", tmp_path / "case.toml")[0] == 0
+
+
+@pytest.mark.parametrize(
+    ("scale", "line", "remedy"),
+    [
+        (1.0, 'size = "45 um"', 'set roughness.height_unit = "um"'),
+        (1e-15, 'size = "45 um"', 'set roughness.height_unit = "um"'),
+        (1e-9, 'size = "45 um"\nheight_unit = "V"', "is not a unit of length; give m, mm, um"),
+    ],
+)
+def test_heights_in_an_unlikely_unit(refused, case_text, tmp_path, scale, line, remedy):
+    np.save(tmp_path / "a.npy", scale * np.random.default_rng(1).normal(size=(90, 90)))
+    (tmp_path / "case.toml").write_text(measured(case_text, f'file = "a.npy"\n{line}'))
+    assert remedy in refused("check", tmp_path / "case.toml")
+
+
+def test_a_size_that_replaces_the_file_is_a_warning(cli, case_text, tmp_path):
+    np.savez(tmp_path / "a.npz", height=np.zeros((90, 90)), size=np.array([80e-6, 80e-6]))
+    line = 'file = "a.npz"\nsize = "45 um"'
+    (tmp_path / "case.toml").write_text(measured(case_text, line))
+    _, out, err = cli("check", tmp_path / "case.toml")
+    assert "it is read as 45 x 45 um, because 'size' says so" in out + err

@@ -113,12 +113,6 @@ def test_another_height_channel_can_be_chosen():
             '"interpolate" to fill them from their neighbours, or crop the file',
         ),
         (
-            "nid-1.nid",
-            {"size": (20e-6, 21e-6)},
-            "the scan is 20 x 20 um according to the file, but 20 x 21 um according to the "
-            "argument 'size'; leave 'size' out, or correct it",
-        ),
-        (
             "di_corrupted.di",
             {},
             "is damaged or incomplete (File is not large enough to contain all data buffers); "
@@ -270,7 +264,7 @@ def fake_file(tmp_path, monkeypatch):
                 channel.index = index
             return SimpleNamespace(
                 channels=list(channels),
-                default_channel=channels[default],
+                default_channel=channels[default] if channels else None,
                 close=lambda: closed.append(path),
             )
 
@@ -321,13 +315,38 @@ def test_default_channel_is_the_readers(fake_file):
         {"data_unit": "A", "is_height_channel": False},  # ampere, not ångström
         {"unit": ("um", "V")},
         {"unit": "V", "data_unit": "V"},
-        {"unit": None, "data_unit": None},
-        {"dim": 1},
     ],
 )
 def test_file_without_a_height_map(fake_file, changes, refusal):
     path, _ = fake_file(fake_channel("odd", **changes))
-    assert "channel 0 ('odd', values in " in refusal(path)
+    unit = changes.get("data_unit") or "V"
+    said = f"contains no height map (channels: 0 ('odd', values in {unit})); export "
+    assert refusal(path).startswith(said)
+    assert refusal(path, channel=0).startswith(f"channel 0 ('odd', values in {unit}) is not a ")
+
+
+def test_a_map_without_a_unit_needs_one(fake_file, refusal):
+    path, _ = fake_file(fake_channel("odd", unit=None, data_unit=None))
+    assert refusal(path).startswith("channel 0 ('odd', values in no stated unit) may hold heights")
+
+
+def test_profiles_are_called_line_scans(fake_file, refusal):
+    path, _ = fake_file(fake_channel("odd", dim=1))
+    assert refusal(path).startswith("is a line scan (a profile of 5 points), not a height map; ")
+
+
+def test_maps_of_the_feedback_are_not_offered(fake_file):
+    names = "Deflection", "ZSensor", "Amplitude retrace", "Error", "Height"
+    path, _ = fake_file(*map(fake_channel, names))
+    provenance = read_surface(path).provenance
+    assert provenance["channel_name"] == "ZSensor"
+    assert provenance["other_height_channels"] == "4 ('Height')"
+    assert read_surface(path, channel=0).provenance["channel_name"] == "Deflection"
+
+
+def test_a_file_without_channels(fake_file, refusal):
+    path, _ = fake_file()
+    assert refusal(path).startswith("contains no height map (channels: none; perhaps the file is ")
 
 
 def test_failure_while_reading_is_one_error(fake_file, refusal):

@@ -204,9 +204,9 @@ def test_decimal_commas_between_semicolons(write, tmp_path):
     assert (height[0, 0], height[3, 1]) == approx((1.5e-9, 8.25e-9), rel=1e-15)
 
 
-def test_decimal_commas_between_tabs_are_not_taken_for_separators(write, refusal, tmp_path):
-    path = write(tmp_path / "a.txt", "1,5e-9\t2,5e-9\t3,5e-9\t4,5e-9\n" * 4)
-    assert "which is not a number" in refusal(path, size=SIZE)
+def test_decimal_commas_between_tabs(write, tmp_path):
+    path = write(tmp_path / "a.txt", "1,5e-9\t2,5e-9\t3,5e-9\t-4,5e-9\n" * 4)
+    assert read_surface(path, size=SIZE).height[:, 0] == approx((1.5e-9, 2.5e-9, 3.5e-9, -4.5e-9))
 
 
 HEADER = "# Channel: Height\n# Width: 10.00 µm\n# Height: 4 {um}\n# Value units: nm\n"
@@ -234,18 +234,20 @@ def test_greek_mu_is_a_micro_sign(write, tmp_path):
     assert read_surface(write(tmp_path / "a.txt", text)).grid.spacing[1] == approx(1e-6)
 
 
-def test_size_may_repeat_but_not_contradict_the_header(write, refusal, tmp_path):
+def test_size_repeats_or_replaces_the_header(write, tmp_path):
     path = write(tmp_path / "a.txt", HEADER.replace("{um}", "um") + MATRIX)
     assert read_surface(path, size=(10.000001e-6, 4e-6)).provenance["size_x_m"] == 1e-5
-    message = refusal(path, size=(10.0001e-6, 4e-6))
-    assert "10 x 4 um according to the file, but 10.0001 x 4 um according to the arg" in message
+    surface = read_surface(path, size=(10.0001e-6, 4e-6))
+    assert surface.provenance["size_x_m"] == 10.0001e-6
+    said = "10 x 4 um according to the file; it is read as 10.0001 x 4 um, because 'size' says so"
+    assert said in surface.provenance["notice"]
 
 
 def test_header_with_one_side_only(write, refusal, tmp_path):
     path = write(tmp_path / "a.txt", "# Width: 10 um\n" + MATRIX_IN_METRES)
     assert "does not contain the size" in refusal(path)
-    message = refusal(path, size=(20e-6, 4e-6))
-    assert "10 x ? um according to the file, but 20 x 4 um according to the argument" in message
+    notice = read_surface(path, size=(20e-6, 4e-6)).provenance["notice"]
+    assert "10 x ? um according to the file; it is read as 20 x 4 um, because" in notice
     assert read_surface(path, size=SIZE).grid.spacing == approx((2e-6, 1e-6))
 
 

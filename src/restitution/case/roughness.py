@@ -17,7 +17,6 @@ from restitution.errors import SurfaceError, shown
 from restitution.numerics.grid import Grid
 from restitution.surfaces import (
     Surface,
-    crop,
     extend,
     generate_surface,
     level,
@@ -30,6 +29,7 @@ from restitution.surfaces.cache import kept
 from restitution.surfaces.defects import noted
 from restitution.surfaces.extend import Extension
 from restitution.surfaces.generate import RoughnessKind
+from restitution.surfaces.reading.scan import UNITS, in_metres
 from restitution.surfaces.refine import divided
 from restitution.surfaces.refused import Code, RefusedSurfaceError
 from restitution.surfaces.shift import note_mirrored_part, place_of
@@ -52,9 +52,17 @@ _REMEDIES: dict[Code, str] = {
     "flat-scan": 'leave roughness.extend out, or set roughness.extend = "mirror"',
     "grid-beyond-surface": "use a smaller grid.nodes or grid.spacing, a larger scan, or "
     "roughness.extend",
+    "height-unit-unknown": 'set roughness.height_unit = "um" (or the unit that they have)',
+    "heights-impossible": 'set roughness.height_unit = "um" (or "mm", "nm"), or correct '
+    "roughness.size",
+    "masked-pixels": 'set roughness.undefined = "interpolate" to fill them from their neighbours, '
+    "remove the mask in Gwyddion, or set roughness.crop",
+    "size-impossible": 'give its edge lengths, such as roughness.size = ["10 um", "10 um"]',
     "size-unknown": 'give its edge lengths, such as roughness.size = ["10 um", "10 um"]',
     "too-few-pixels": f"use a scan of at least {LEAST_PIXELS} x {LEAST_PIXELS}, or set "
     'roughness.extend = "mirror"',
+    "too-many-undefined": 'set roughness.crop = { x = ["-4 um", "4 um"], y = ["-4 um", "4 um"] } '
+    "to use a part with fewer, or measure again",
     "undefined-pixels": 'set roughness.undefined = "interpolate" to fill them from their '
     "neighbours, or crop the file",
 }
@@ -74,6 +82,13 @@ def _ascending(value: tuple[float, float]) -> tuple[float, float]:
 
 
 Range = Annotated[tuple[Position, Position], BeforeValidator(_range), AfterValidator(_ascending)]
+
+
+def _unit_of_length(value: str) -> str:
+    """Require the name of a unit of length."""
+    if in_metres(1.0, value) is None:
+        raise ValueError(f"{shown(value)} is not a unit of length; give {UNITS}")
+    return value
 
 
 Realisations = Annotated[int, Field(ge=1, le=MOST_REALISATIONS)]
@@ -141,6 +156,7 @@ class MeasuredRoughness(Table):
     file: Annotated[str, Field(min_length=1)]
     channel: Annotated[int, Field(ge=0)] | None = None
     size: Annotated[tuple[Length, Length], PairOf] | None = None
+    height_unit: Annotated[str, AfterValidator(_unit_of_length)] | None = None
     undefined: Literal["error", "interpolate"] = "error"
     crop: CropTable = CropTable()
     outliers: Annotated[float, Field(gt=0)] | None = None
@@ -180,13 +196,15 @@ class MeasuredRoughness(Table):
         The key `place` is the number of this point in a fixed sequence (see `surfaces.shift`). The
         file name is relative to `folder`.
         """
-        with _naming({}):
-            scan = read_surface(
-                folder / self.file, channel=self.channel, size=self.size, undefined=self.undefined
-            )
         with _naming(_CLEANING_KEYS):
-            if self.crop != CropTable():
-                scan = crop(scan, x=self.crop.x, y=self.crop.y)
+            scan = read_surface(
+                folder / self.file,
+                channel=self.channel,
+                size=self.size,
+                height_unit=self.height_unit,
+                undefined=self.undefined,
+                within=(self.crop.x, self.crop.y),
+            )
             if self.outliers is not None:
                 scan = remove_outliers(scan, self.outliers)
         # Level the scan before cutting out the part that the grid covers, because tilt and form are

@@ -238,7 +238,19 @@ _SURFACE = (
     Field("roughness.seed", "Seed", "", 0, 100, False, True, when=_MADE, initial=1),
     Field("roughness.channel", "Channel of the file", whole=True, when=_READ, more=True),
     Field(
-        "roughness.size", "Edge lengths", "m", when=_READ, hint="if the file lacks them", more=True
+        "roughness.size",
+        "Edge lengths",
+        "m",
+        when=_READ,
+        hint="if the file lacks them, or is wrong",
+        more=True,
+    ),
+    Field(
+        "roughness.height_unit",
+        "Unit of the heights",
+        choices=_named(("um", "nm", "mm", "m", "pm"), "as in the file, or m"),
+        when=_READ,
+        more=True,
     ),
     Field(
         "roughness.detrend",

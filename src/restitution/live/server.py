@@ -190,7 +190,7 @@ class Server:
         found: dict[str, Any] = {}
         async for line in self._live.ask(request.headers.get("x-tab", ""), "read", file=name):
             found.update(json.loads(line))
-        if "nodes" not in found and not found.get("needs_size"):
+        if "nodes" not in found and not {"needs_size", "needs_height_unit"} & found.keys():
             file.unlink(missing_ok=True)
         return JSONResponse({"name": name, **found})
 

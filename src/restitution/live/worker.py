@@ -165,16 +165,16 @@ class Worker:
         yield as_json({"file": str(file.relative_to(self._room))})
 
     def read(self, tab: str, file: str) -> Iterator[str]:
-        """Read a scan; yield its nodes and spacing, or `needs_size` if the file states no size."""
+        """Read a scan; yield its nodes and spacing, or what the form must add, and why."""
         from restitution.surfaces import read_surface
         from restitution.surfaces.refused import RefusedSurfaceError
 
         try:
             surface = read_surface(self._scans / file, undefined="interpolate")
         except RefusedSurfaceError as error:
-            if error.code != "size-unknown":
+            if (needed := _NEEDED.get(error.code)) is None:
                 raise
-            yield as_json({"needs_size": error.fact})
+            yield as_json({needed: error.fact})
             return
         yield as_json({"nodes": surface.grid.nodes, "spacing_m": surface.grid.spacing})
 
@@ -184,6 +184,15 @@ class Worker:
             self._send(as_json({"progress": words}))
 
         return self._runs.folder(text, self._scans, told, grids)
+
+
+# What the form can add to a scan that is refused, by the code of the error.
+_NEEDED = {
+    "size-unknown": "needs_size",
+    "size-impossible": "needs_size",
+    "height-unit-unknown": "needs_height_unit",
+    "heights-impossible": "needs_height_unit",
+}
 
 
 def serve(connection: Connection, scans: Path, room: Path) -> None:

@@ -6,26 +6,35 @@ import hashlib
 import math
 import os
 import stat
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Literal, get_args
 
 import numpy as np
 
 from restitution.arguments import typed
+from restitution.display import quantity
 from restitution.errors import SurfaceError, shown
 from restitution.numerics.grid import Grid
+from restitution.surfaces.clean import Range, crop
 from restitution.surfaces.fill import fill_harmonically
-from restitution.surfaces.instrument_files import (
+from restitution.surfaces.reading.instrument_files import (
     INSTALL_READERS,
     NoReadersError,
     UnrecognisedError,
     read_instrument,
 )
-from restitution.surfaces.numpy_files import NUMPY_SUFFIXES, read_numpy
+from restitution.surfaces.reading.nms import NMS_SUFFIX, read_nms
+from restitution.surfaces.reading.numpy_files import NUMPY_SUFFIXES, read_numpy
+from restitution.surfaces.reading.scan import MOST_PIXELS, LineScanError, Scan, converted, in_metres
+from restitution.surfaces.reading.sdf import SDF_MAGIC, read_sdf
+from restitution.surfaces.reading.sur import COMPRESSED, PLAIN, read_sur
+from restitution.surfaces.reading.text_files import TEXT_SUFFIXES, NotAMatrixError, read_text
+from restitution.surfaces.reading.tmd import TMD_MAGIC, read_tmd
+from restitution.surfaces.reading.wyko import WYKO_MAGIC, read_wyko
+from restitution.surfaces.reading.x3p import is_x3p, read_x3p
 from restitution.surfaces.refused import RefusedSurfaceError
-from restitution.surfaces.scan import MOST_PIXELS, Scan
-from restitution.surfaces.surface import Array, Surface
-from restitution.surfaces.text_files import TEXT_SUFFIXES, NotAMatrixError, read_text
+from restitution.surfaces.surface import Array, Surface, noted
 
 UndefinedPixels = Literal["error", "interpolate"]
 
@@ -34,10 +43,13 @@ UndefinedPixels = Literal["error", "interpolate"]
 _LARGEST_FILL = 0.2
 # The size in the file and the argument `size` count as equal up to this relative difference.
 _SIZE_ROUNDING = 1e-6
-# Largest allowed ratio of the height range to the longer edge of the scan. Heights that are not in
-# metres exceed this ratio by far.
-_TALLEST = 10.0
+# Ratio of the height range to the longer edge of the scan. Above 1, the scan is on average steeper
+# than 45°, and a warning says so; no scan reaches 10.
+_STEEP, _TALLEST = 1.0, 10.0
+_LOWEST = 1e-12  # smallest height range (m) that any instrument measures
+_LONGEST_EDGE, _LARGEST_PIXEL = 1.0, 1e-3  # of a scan with a microscope or a profiler (m)
 _LARGEST = 2**30  # largest size of a file (bytes)
+_OTHER_UNIT = 'set height_unit = "um" (or "mm", "nm"), or correct size'
 
 
 @typed
@@ -46,28 +58,33 @@ def read_surface(
     *,
     channel: int | None = None,
     size: tuple[float, float] | None = None,
+    height_unit: str | None = None,
     undefined: UndefinedPixels = "error",
+    within: tuple[Range | None, Range | None] = (None, None),
 ) -> Surface:
     """Read a measured height map, without levelling it.
 
     - `.npy`, `.npz`: a 2-D array in metres, `array[i, j]` at x_i, y_j.
     - `.txt`, `.csv`, `.dat`, `.asc`: a matrix in metres; each line of the file is a scan line
       (constant y).
-    - All other files, and text that is not a plain matrix: any format that SurfaceTopography can
-      read. Install the extra `measured` for these formats.
+    - All other files, and text that is not a plain matrix: NanoFocus, SDF and Wyko text, and any
+      format that SurfaceTopography can read. Install the extra `measured` for these formats.
 
     The provenance contains the file with its SHA-256, format and channel, the size of the scan, and
-    the number of undefined pixels.
+    the number of undefined pixels. Its `notice` names what is doubtful, and values of the file that
+    an argument replaced.
 
     Args:
         path: File to read.
         channel: Number of the channel, counted from 0; None selects the reader's default height
             channel.
         size: Edge lengths of the scan along x and y (m): number of pixels times pixel size.
-            Required if the file does not contain the lengths. Otherwise `size` must agree with the
-            file.
+            Required if the file does not contain the lengths; otherwise it replaces them.
+        height_unit: Unit of the heights, such as "um"; it replaces the unit in the file. The
+            default is the unit in the file, or metres.
         undefined: `interpolate` fills undefined pixels harmonically from their neighbours, if at
             most 20 % of all pixels are undefined. `error` rejects a scan with undefined pixels.
+        within: Ranges of x and y (m) to read, as in `crop`; None reads the whole range.
 
     Returns:
         Surface with heights (m), shape (nx, ny).
@@ -76,6 +93,44 @@ def read_surface(
         SurfaceError: The file cannot be read or its content cannot be used, or an argument is
             invalid.
     """
+    _check_arguments(undefined, size, height_unit)
+    file = Path(path)
+    _check_readable(file)
+    scan = _read_scan(file, channel)
+    _check_shape(file, scan.height)
+    heights, other = _in_unit(file, scan, height_unit)
+    edges, notices = _agreed_size(file, scan, size)
+    nx, ny = heights.shape
+    grid = Grid((nx, ny), (edges[0] / nx, edges[1] / ny))
+    notices += [*scan.notices, *other, *_doubtful_size(file, grid, given=size is not None)]
+    heights, grid, cropped = _part(heights, grid, within)
+    defined = np.isfinite(heights)
+    missing = int(np.count_nonzero(~defined))
+    _check_undefined(file, missing, defined.size, undefined, masked=scan.masked)
+    notices += _doubtful_heights(file, heights[defined], edges, given=height_unit is not None)
+    provenance: dict[str, str | float] = {
+        "source": "measured",
+        "file": str(file),
+        "file_sha256": _digest(file),
+        **scan.details,
+        **({"height_unit": height_unit} if height_unit else {}),
+        **cropped,
+        "size_x_m": grid.size[0] if cropped else edges[0],
+        "size_y_m": grid.size[1] if cropped else edges[1],
+        "pixel_x_m": grid.spacing[0],
+        "pixel_y_m": grid.spacing[1],
+        "undefined_pixels": missing,
+        "undefined_fraction": missing / defined.size,
+        "undefined_treatment": "interpolated harmonically" if missing else "none to treat",
+    }
+    for notice in notices:
+        provenance = noted(provenance, notice)
+    return Surface(fill_harmonically(heights, grid.spacing), grid, provenance)
+
+
+def _check_arguments(
+    undefined: str, size: tuple[float, float] | None, height_unit: str | None
+) -> None:
     if undefined not in get_args(UndefinedPixels):
         raise SurfaceError(f"undefined={undefined!r} is unknown; choose 'error' or 'interpolate'")
     if size is not None and not all(math.isfinite(side) and side > 0 for side in size):
@@ -83,40 +138,19 @@ def read_surface(
             f"size: {size[0]:g} x {size[1]:g} m are not two positive lengths; give the edge "
             "lengths of the scan in m"
         )
-    file = Path(path)
-    _check_readable(file)
-    scan = _read_scan(file, channel)
-    edges = _agreed_size(file, scan, size)
-    nx, ny = scan.height.shape
-    grid = Grid((nx, ny), (edges[0] / nx, edges[1] / ny))
+    if height_unit is not None:
+        converted(np.zeros(0), "m", height_unit)
 
+
+def _check_shape(file: Path, heights: Array) -> None:
+    nx, ny = heights.shape
+    if min(nx, ny) < 2:
+        raise LineScanError(file, max(nx, ny))
     if nx * ny > MOST_PIXELS:
         raise SurfaceError(
             f"{file}: holds {nx} x {ny} pixels, more than the {MOST_PIXELS} that a scan may have; "
             "crop it, or save fewer pixels"
         )
-    defined = np.isfinite(scan.height)
-    missing = int(np.count_nonzero(~defined))
-    _check_undefined(file, missing, defined.size, undefined)
-    _check_metres(file, scan.height[defined], edges)
-    height = fill_harmonically(scan.height, grid.spacing)
-    return Surface(
-        height,
-        grid,
-        {
-            "source": "measured",
-            "file": str(file),
-            "file_sha256": _digest(file),
-            **scan.details,
-            "size_x_m": edges[0],
-            "size_y_m": edges[1],
-            "pixel_x_m": grid.spacing[0],
-            "pixel_y_m": grid.spacing[1],
-            "undefined_pixels": missing,
-            "undefined_fraction": missing / defined.size,
-            "undefined_treatment": "interpolated harmonically" if missing else "none to treat",
-        },
-    )
 
 
 def _check_readable(file: Path) -> None:
@@ -155,24 +189,30 @@ def _digest(file: Path) -> str:
 
 def _read_scan(file: Path, channel: int | None) -> Scan:
     suffix = file.suffix.lower()
-    if suffix in NUMPY_SUFFIXES:
-        scan = read_numpy(file)
-    elif suffix in TEXT_SUFFIXES:
-        try:
-            scan = read_text(file)
-        except NotAMatrixError as not_a_matrix:
-            # Instruments also write files with these suffixes. If no reader of instrument files
-            # can open the file, the error of the matrix reader is reported.
-            try:
-                return read_instrument(file, channel)
-            except UnrecognisedError:
-                raise not_a_matrix from None
-            except NoReadersError as no_readers:
-                raise SurfaceError(
-                    f"{not_a_matrix}; if the file has an instrument's own format, {INSTALL_READERS}"
-                ) from no_readers
-    else:
+    with file.open("rb") as stream:
+        head = stream.read(64)
+    if head.startswith((PLAIN, COMPRESSED)):
+        return read_sur(file, channel)
+    if head.startswith(TMD_MAGIC):
+        return read_tmd(file, channel)
+    if suffix not in NUMPY_SUFFIXES and is_x3p(file):
+        return read_x3p(file, channel)
+    single = _single_channel(suffix, head)
+    if single is None:
         return read_instrument(file, channel)
+    try:
+        scan = single(file)
+    except NotAMatrixError as not_a_matrix:
+        # Instruments also write files with these suffixes. If no reader of instrument files can
+        # open the file, the error of the matrix reader is reported.
+        try:
+            return read_instrument(file, channel)
+        except UnrecognisedError:
+            raise not_a_matrix from None
+        except NoReadersError as no_readers:
+            raise SurfaceError(
+                f"{not_a_matrix}; if the file has an instrument's own format, {INSTALL_READERS}"
+            ) from no_readers
     if channel not in (None, 0):
         raise SurfaceError(
             f"{file}: there is no channel {channel}; this format holds one channel, so leave "
@@ -181,9 +221,26 @@ def _read_scan(file: Path, channel: int | None) -> Scan:
     return scan
 
 
-def _agreed_size(file: Path, scan: Scan, given: tuple[float, float] | None) -> tuple[float, float]:
-    """Edge lengths (m) from the file or from `given`; raise `SurfaceError` if they disagree."""
-    if not all(side is None or (math.isfinite(side) and side > 0) for side in scan.size):
+def _single_channel(suffix: str, head: bytes) -> Callable[[Path], Scan] | None:
+    """The reader of a format that contains one height map; None for other formats."""
+    if SDF_MAGIC.match(head):
+        return read_sdf
+    if head.startswith(WYKO_MAGIC):
+        return read_wyko
+    if suffix == NMS_SUFFIX:
+        return read_nms
+    if suffix in NUMPY_SUFFIXES:
+        return read_numpy
+    return read_text if suffix in TEXT_SUFFIXES else None
+
+
+def _agreed_size(
+    file: Path, scan: Scan, given: tuple[float, float] | None
+) -> tuple[tuple[float, float], list[str]]:
+    """Edge lengths (m) from `given` or from the file, and a notice if they differ."""
+    if given is None and not all(
+        side is None or (math.isfinite(side) and side > 0) for side in scan.size
+    ):
         raise SurfaceError(
             f"{file}: states a scan size of {_text(scan.size)} um, which is not two positive "
             "lengths; correct the file"
@@ -191,44 +248,121 @@ def _agreed_size(file: Path, scan: Scan, given: tuple[float, float] | None) -> t
     x, y = scan.size
     if given is None:
         if x is None or y is None:
+            axes = scan.details.get("axes")
             raise RefusedSurfaceError(
                 "size-unknown",
-                f"{file}: does not contain the size of the scan",
+                f"{file}: does not contain the size of the scan"
+                + (f" (its axes have {axes})" if axes else ""),
                 "give its edge lengths in m, such as size=(10e-6, 10e-6)",
             )
-        return x, y
-    for stated, wanted in zip(scan.size, given, strict=True):
-        if stated is not None and not math.isclose(stated, wanted, rel_tol=_SIZE_ROUNDING):
-            raise SurfaceError(
-                f"{file}: the scan is {_text(scan.size)} um according to the file, but "
-                f"{_text(given)} um according to the argument 'size'; leave 'size' out, or correct "
-                "it"
+        return (x, y), []
+    same = all(
+        stated is None or math.isclose(stated, wanted, rel_tol=_SIZE_ROUNDING)
+        for stated, wanted in zip(scan.size, given, strict=True)
+    )
+    if same:
+        # The size in the file is preferred, because the argument may be rounded.
+        return (given[0] if x is None else x, given[1] if y is None else y), []
+    return given, [
+        f"{file}: the scan is {_text(scan.size)} um according to the file; it is read as "
+        f"{_text(given)} um, because 'size' says so"
+    ]
+
+
+def _in_unit(file: Path, scan: Scan, given: str | None) -> tuple[Array, list[str]]:
+    """Heights (m) in the unit `given`, and a notice if the file states another unit."""
+    if given is None:
+        if scan.unit is None:
+            raise RefusedSurfaceError(
+                "height-unit-unknown",
+                f"{file}: channel {scan.details.get('channel', 0)} "
+                f"('{scan.details.get('channel_name', '')}', values in no stated unit) may hold "
+                "heights in any unit",
+                'give height_unit="um" (or the unit that it has), or save heights in metres with '
+                "numpy.save",
             )
-    # The size in the file is preferred, because the argument may be rounded.
-    return given[0] if x is None else x, given[1] if y is None else y
+        return scan.height, []
+    heights = converted(scan.height, scan.unit, given)
+    if not scan.stated or in_metres(1.0, scan.unit) == in_metres(1.0, given):
+        return heights, []
+    return heights, [
+        f"{file}: the heights are in {scan.unit} according to the file; they are read in {given}, "
+        "because 'height_unit' says so"
+    ]
 
 
-def _check_undefined(file: Path, missing: int, total: int, undefined: UndefinedPixels) -> None:
+def _doubtful_size(file: Path, grid: Grid, *, given: bool) -> Iterator[str]:
+    """Yield a notice if a scan is too large; raise an error unless the user gave its size."""
+    if max(grid.size) < _LONGEST_EDGE and max(grid.spacing) <= _LARGEST_PIXEL:
+        return
+    edges = " x ".join(quantity(edge, "m") for edge in grid.size)
+    pixel = quantity(max(grid.spacing), "m")
+    fact = f"{file}: a scan of {edges} with pixels of {pixel} is larger than instruments take"
+    if not given:
+        raise RefusedSurfaceError(
+            "size-impossible", fact, "give its edge lengths in m, such as size=(10e-6, 10e-6)"
+        )
+    yield f"{fact}; correct size, unless it is right"
+
+
+def _part(
+    heights: Array, grid: Grid, within: tuple[Range | None, Range | None]
+) -> tuple[Array, Grid, dict[str, str | float]]:
+    """The part of the scan `within` ranges, its grid, and what the provenance says of it."""
+    if within == (None, None):
+        return heights, grid, {}
+    # `crop` accepts only defined heights, so the marks of undefined pixels are cropped apart.
+    defined = np.isfinite(heights)
+    x, y = within
+    part, kept = (
+        crop(Surface(values, grid), x=x, y=y)
+        for values in (np.where(defined, heights, 0.0), defined.astype(np.float64))
+    )
+    return np.where(kept.height > 0, part.height, np.nan), part.grid, dict(part.provenance)
+
+
+def _check_undefined(
+    file: Path, missing: int, total: int, undefined: UndefinedPixels, *, masked: bool
+) -> None:
+    how = "masked in the file" if masked else "undefined"
     if missing > _LARGEST_FILL * total:
-        raise SurfaceError(
-            f"{file}: {missing} of {total} pixels ({missing / total:.1%}) are undefined, more than "
-            f"the {_LARGEST_FILL:.0%} that can be filled; measure again, or crop the file"
+        raise RefusedSurfaceError(
+            "too-many-undefined",
+            f"{file}: {missing} of {total} pixels ({missing / total:.1%}) are {how}, more than "
+            f"the {_LARGEST_FILL:.0%} that can be filled",
+            "give within=(...) to read a part with fewer, "
+            + ("or remove the mask" if masked else "measure again, or crop the file"),
         )
     if missing and undefined == "error":
         raise RefusedSurfaceError(
-            "undefined-pixels",
-            f"{file}: {missing} of {total} pixels ({missing / total:.2%}) are undefined",
-            'give undefined="interpolate" to fill them from their neighbours, or crop the file',
+            "masked-pixels" if masked else "undefined-pixels",
+            f"{file}: {missing} of {total} pixels ({missing / total:.2%}) are {how}",
+            'give undefined="interpolate" to fill them from their neighbours, '
+            + ("remove the mask in Gwyddion, " if masked else "")
+            + "or crop the file",
         )
 
 
-def _check_metres(file: Path, heights: Array, edges: tuple[float, float]) -> None:
-    span = float(heights.max()) - float(heights.min())
+def _doubtful_heights(
+    file: Path, heights: Array, edges: tuple[float, float], *, given: bool
+) -> Iterator[str]:
+    """Yield a notice for heights in a unit that is probably wrong; raise an error if it must be."""
+    span = float(heights.max()) - float(heights.min()) if heights.size else 0.0
+    scan = f"{file}: heights that span {quantity(span, 'm')} on a scan of {_text(edges)} um"
     if span > _TALLEST * max(edges):
-        raise SurfaceError(
-            f"{file}: heights that span {span:g} m on a scan of {_text(edges)} um cannot be in "
-            "metres; convert them to metres, or correct the size"
+        raise RefusedSurfaceError(
+            "heights-impossible",
+            f"{scan} cannot be in {'that unit' if given else 'metres'}",
+            _OTHER_UNIT,
         )
+    if span > _STEEP * max(edges):
+        yield f"{scan} are taller than the scan is wide; {_OTHER_UNIT}"
+    if 0 < span < _LOWEST:
+        if not given:
+            raise RefusedSurfaceError(
+                "heights-impossible", f"{scan} are lower than any instrument measures", _OTHER_UNIT
+            )
+        yield f"{scan} are lower than any instrument measures; correct height_unit"
 
 
 def _text(lengths: tuple[float | None, float | None]) -> str:

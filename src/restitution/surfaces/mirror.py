@@ -12,7 +12,7 @@ from restitution.surfaces.resample import (
     same_spacing,
     spline,
 )
-from restitution.surfaces.surface import Array, Surface
+from restitution.surfaces.surface import Array, Surface, noted
 
 
 def mirrored(scan: Surface, grid: Grid) -> Surface:
@@ -36,13 +36,15 @@ def mirrored(scan: Surface, grid: Grid) -> Surface:
         height,
         grid,
         {
-            **scan.provenance,
+            **noted(
+                scan.provenance,
+                f"{scan.provenance.get('file', 'the scan')}: the surface consists of {tiles} tiles "
+                "of the scan and its mirror images, so it repeats itself",
+            ),
             "source": "mirrored",
             "extension": f"mirrored tiling, {tiles} times the scan",
             "placement": "tiles of the scan, with the waves that the grid carries",
             **left_out(scan, kept, grid.spacing),
-            "notice": f"{scan.provenance.get('file', 'the scan')}: the surface consists of {tiles} "
-            "tiles of the scan and its mirror images, so it repeats itself",
         },
     )
 

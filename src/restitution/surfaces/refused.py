@@ -14,8 +14,13 @@ Code = Literal[
     "cells-above-scan",
     "flat-scan",
     "grid-beyond-surface",
+    "height-unit-unknown",
+    "heights-impossible",
+    "masked-pixels",
+    "size-impossible",
     "size-unknown",
     "too-few-pixels",
+    "too-many-undefined",
     "undefined-pixels",
 ]
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from restitution.surfaces.surface import Surface
+from restitution.surfaces.surface import Surface, noted
 
 # Steps along x and y of an additive recurrence with low discrepancy: for any N, its first N points
 # fill a square evenly. The steps are 1/ρ and 1/ρ², where ρ is the plastic number (ρ³ = ρ + 1).
@@ -41,7 +41,7 @@ def note_mirrored_part(surface: Surface) -> Surface:
     `surface` is a scan that `place_of` moved and that was then placed on a grid.
     """
     origin = surface.provenance
-    if not origin.get("place") or "notice" in origin:
+    if not origin.get("place") or "extension" in origin:
         return surface
     measured = 1.0
     for axis, edge in zip("xy", surface.grid.size, strict=True):
@@ -54,4 +54,4 @@ def note_mirrored_part(surface: Surface) -> Surface:
         f"so the mirror image of the scan covers {1 - measured:.0%} of the grid; a smaller grid "
         "avoids this"
     )
-    return replace(surface, provenance={**origin, "notice": notice})
+    return replace(surface, provenance=noted(origin, notice))

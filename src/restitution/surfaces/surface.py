@@ -63,6 +63,12 @@ class Surface:
     _repr_html_ = summary_html
 
 
+def noted(provenance: Mapping[str, str | float], notice: str) -> dict[str, str | float]:
+    """Add `notice` to those in `provenance`, which every result repeats as warnings."""
+    before = provenance.get("notice")
+    return {**provenance, "notice": f"{before}; {notice}" if before else notice}
+
+
 def is_periodic(surface: Surface) -> bool:
     """Whether the provenance states that opposite edges of the surface match."""
     return str(surface.provenance.get("periodicity", "")).startswith("periodic")

@@ -32,7 +32,7 @@ from restitution.surfaces.describe import describe, rms_slope
 from restitution.surfaces.psd import power_spectral_density, radial_spectrum
 from restitution.surfaces.refused import RefusedSurfaceError
 from restitution.surfaces.resample import carried, crop_to, left_out, place_on_grid
-from restitution.surfaces.surface import Array, Surface
+from restitution.surfaces.surface import Array, Surface, noted
 from restitution.surfaces.wave_spectrum import Modes, WaveSpectrum, spectrum_of
 
 LEAST_PIXELS = 16  # smallest number of pixels of a scan along each axis
@@ -270,7 +270,7 @@ def _provenance(
             "single particles or residual form: crop the scan, remove outliers or level it"
         )
     return {
-        **scan.provenance,
+        **noted(scan.provenance, notice),
         "source": "twin",
         "extension": "statistical twin",
         "seed": seed,
@@ -281,7 +281,6 @@ def _provenance(
         **({"periodicity": "periodic over the domain"} if periodic else {}),
         "placement": "made on the grid, with the waves that it carries",
         **removed,
-        "notice": notice,
     }
 
 

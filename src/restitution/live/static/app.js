@@ -635,6 +635,7 @@ async function upload(file) {
   else if (found.nodes) content.grid = { nodes: 512, spacing: `${Number((1e9 * Math.max(...found.spacing_m)).toPrecision(4))} nm` };
   drawForm();
   if (found.needs_size) showProblems({ "roughness.size": `${found.needs_size}; give its edge lengths, such as 10 um, 10 um` });
+  if (found.needs_height_unit) showProblems({ "roughness.height_unit": `${found.needs_height_unit}; choose the unit of the heights` });
   changed();
 }
 

@@ -14,14 +14,18 @@ from pathlib import Path
 import numpy as np
 
 from restitution.errors import SurfaceError, shown
-from restitution.surfaces.numpy_files import SAVE_AS_NUMPY
-from restitution.surfaces.scan import Y_DOWN, Scan, in_metres
+from restitution.surfaces.reading.axes import axes_of
+from restitution.surfaces.reading.decode import decode
+from restitution.surfaces.reading.numpy_files import SAVE_AS_NUMPY
+from restitution.surfaces.reading.scan import Y_DOWN, Scan, in_metres
 
 TEXT_SUFFIXES = frozenset({".txt", ".csv", ".dat", ".asc"})
 
 _LEAST_VALUES = 4  # smallest number of heights of a scan line; fewer values may be coordinates
 _LONGEST = 200  # longer header values (in characters) are not read as a number with a unit
 _NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?"
+# A number with at most one comma, which is then its decimal sign, or a mark of an undefined pixel.
+_DECIMAL_COMMA = re.compile(r"[-+]?\d+(?:,\d+)?(?:[eE][-+]?\d+)?|nan|bad", re.IGNORECASE)
 _QUANTITY = re.compile(rf"(?P<number>{_NUMBER})\s*(?P<unit>\S+)")
 # Header keys that set units or scales in files of other programs (SPIP, Nova, Gwyddion's XYZ).
 _FOREIGN_KEY = re.compile(r"unit|length|pixel|bit2|file format|factor", re.IGNORECASE)
@@ -45,12 +49,14 @@ def read_text(path: Path) -> Scan:
     Lines that start with # are comments. `# Width:` and `# Height:` give the size of the scan, and
     `# Value units:` the unit of the heights. Keys such as `# nx:`, `# ny:` and `# Pixels:` give the
     number of values per line and the number of lines. An empty field, `nan` or `bad` marks an
-    undefined pixel. If fields are separated by semicolons, the comma is the decimal sign.
+    undefined pixel. If fields are separated by semicolons, or by white space around numbers with
+    one comma each, the comma is the decimal sign. A first line and a first column that are axes are
+    left out.
 
     Raises `NotAMatrixError` if the content is not such a matrix but another reader may understand
     it, and `SurfaceError` for a matrix that is damaged or does not contain heights.
     """
-    lines = [line.strip() for line in _decode(path).splitlines()]
+    lines = [line.strip() for line in decode(path.read_bytes()).splitlines()]
     data = [(n, line) for n, line in enumerate(lines, 1) if line and not line.startswith("#")]
     if not data:
         raise SurfaceError(f"{path}: holds no numbers; {SAVE_AS_NUMPY}")
@@ -70,17 +76,21 @@ def read_text(path: Path) -> Scan:
             "not a height map; give a matrix with a scan line of at least 4 heights on each line"
         )
     size, metres_per_value, details, counts = _read_header(path, comments)
-    _check_counts(path, counts, (width, len(rows)))
-    height = np.ascontiguousarray(np.array(rows, dtype=np.float64).T) * metres_per_value
-    return Scan(height, size, {"format": "text matrix", **Y_DOWN, **details})
-
-
-def _decode(path: Path) -> str:
-    raw = path.read_bytes()
-    try:
-        return raw.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return raw.decode("latin-1")
+    values = np.array(rows, dtype=np.float64)
+    axes = axes_of(values)
+    if axes is None and _has_text_corner(data[0][1]):
+        raise _damaged(path, *data[0], width)
+    if axes is not None:
+        values, details = values[1:, 1:], {**details, "axes": axes.steps}
+    _check_counts(path, counts, (values.shape[1], values.shape[0]))
+    return Scan(
+        np.ascontiguousarray(values.T) * metres_per_value,
+        size,
+        {"format": "text matrix", **Y_DOWN, **details},
+        unit=str(details.get("file_unit", "m")),
+        stated="file_unit" in details,
+        notices=() if axes is None else (axes.notice(path),),
+    )
 
 
 def _parse_rows(path: Path, data: list[tuple[int, str]], *, plain: bool) -> list[list[float]]:
@@ -93,9 +103,10 @@ def _parse_rows(path: Path, data: list[tuple[int, str]], *, plain: bool) -> list
     """
     rows: list[list[float]] = []  # a line of text becomes an empty row
     first: NotAMatrixError | None = None
+    corner = _has_text_corner(data[0][1])
     for number, line in data:
         try:
-            rows.append(_parse_row(path, number, line))
+            rows.append(_parse_row(path, number, line, corner=corner and not rows))
         except NotAMatrixError as error:
             rows.append([])
             first = first or error
@@ -106,11 +117,15 @@ def _parse_rows(path: Path, data: list[tuple[int, str]], *, plain: bool) -> list
     begin = next((i for i, row in enumerate(rows) if len(row) == usual), 0)
     for i, (row, (number, line)) in enumerate(zip(rows, data, strict=True)):
         if usual and not row and (plain or begin < i or _is_nearly_a_row(path, line, usual)):
-            raise SurfaceError(
-                f"{path}: line {number}, {shown(line, 20)}, is not a scan line of {usual} values "
-                "like the others, so the file is damaged; export it again"
-            )
+            raise _damaged(path, number, line, usual)
     raise first
+
+
+def _damaged(path: Path, number: int, line: str, usual: int) -> SurfaceError:
+    return SurfaceError(
+        f"{path}: line {number}, {shown(line, 20)}, is not a scan line of {usual} values like the "
+        "others, so the file is damaged; export it again"
+    )
 
 
 def _is_nearly_a_row(path: Path, line: str, width: int) -> bool:
@@ -123,8 +138,22 @@ def _is_nearly_a_row(path: Path, line: str, width: int) -> bool:
     return 2 * numbers >= width
 
 
-def _parse_row(path: Path, number: int, line: str) -> list[float]:
+def _has_text_corner(line: str) -> bool:
+    """Whether `line` may be an axis: numbers after one field of text."""
+    first, *others = _fields(line)
+    numbers = all(re.fullmatch(_NUMBER, text.strip()) for text in others)
+    return (
+        numbers
+        and len(others) >= _LEAST_VALUES
+        and not re.fullmatch(_NUMBER, first.strip())
+        and (first.strip().lower() not in _UNDEFINED)
+    )
+
+
+def _parse_row(path: Path, number: int, line: str, *, corner: bool = False) -> list[float]:
     fields = _fields(line)
+    if corner:
+        fields[0] = ""
     try:
         return [float(text) for text in fields]
     except ValueError:
@@ -134,9 +163,10 @@ def _parse_row(path: Path, number: int, line: str) -> list[float]:
 def _fields(line: str) -> list[str]:
     if ";" in line:
         return line.replace(",", ".").removesuffix(";").split(";")
-    if "," in line:
-        return line.removesuffix(",").split(",")
-    return line.split()
+    fields = line.split()
+    if "," in line and len(fields) > 1 and all(map(_DECIMAL_COMMA.fullmatch, fields)):
+        return [field.replace(",", ".") for field in fields]
+    return line.removesuffix(",").split(",") if "," in line else fields
 
 
 def _parse_field(path: Path, number: int, text: str) -> float:
@@ -179,7 +209,7 @@ def _read_header(
                     f"{path}: its values are in {shown(value)}, which is not a unit of length; "
                     "export the height channel instead"
                 )
-            metres_per_value = length
+            metres_per_value, details["file_unit"] = length, value
         elif key == "channel":
             if "channel_name" in details:
                 raise NotAMatrixError(

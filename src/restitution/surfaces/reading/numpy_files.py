@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.errors import SurfaceError
-from restitution.surfaces.scan import MOST_PIXELS, Scan
+from restitution.surfaces.reading.scan import MOST_PIXELS, Scan
 
 NUMPY_SUFFIXES = frozenset({".npy", ".npz"})
 SAVE_AS_NUMPY = "save the heights in metres as a 2-D array with numpy.save"
@@ -36,7 +36,7 @@ def read_numpy(path: Path) -> Scan:
     # A long double beyond the range of float64 becomes infinite and counts as an undefined height.
     with np.errstate(over="ignore"):
         height = np.array(array, dtype=np.float64)
-    return Scan(height, size, details)
+    return Scan(height, size, details, stated=False)
 
 
 def _load_arrays(
