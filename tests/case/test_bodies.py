@@ -75,7 +75,9 @@ def test_a_body_without_a_yield_strength_yields_at_its_hardness():
     case = parsed(f'{steel}[interface]\nyield_pressure = "1.6 Y"\n')
     strength = material("polystyrene").yield_strength.value
     assert case.yielding() == Yielding(
-        "1.6 Y of second (polystyrene), Y = 90 MPa", yield_pressure=1.6 * strength
+        "1.6 Y of second (polystyrene), Y = 90 MPa",
+        yield_pressure=1.6 * strength,
+        yields="second",
     )
     soft = 'first = { material = "sodium-chloride", radius = "1 mm" }\nsecond = "steel"\n'
     case = parsed(f'{soft}[interface]\nyield_pressure = "1.6 Y"\n')
@@ -132,10 +134,15 @@ def test_a_known_strength_bounds_by_an_expanding_cavity():
         f"Y of second (stainless-steel), {1e-6 * strength:.6g} MPa",
         "expanding-cavity",
         yield_strength=strength,
+        yields="second",
     )
     own = parsed(f'{STEELS}[interface]\nyield_strength = "1 GPa"\ntangent_modulus = "2 GPa"\n')
     assert own.yielding() == Yielding(
-        "given", "expanding-cavity", yield_strength=1e9, tangent_modulus=2e9
+        "given",
+        "expanding-cavity",
+        yield_strength=1e9,
+        tangent_modulus=2e9,
+        yields="second",
     )
     contact = own.contact(Path())
     assert contact.yield_strength == 1e9
@@ -197,3 +204,36 @@ def test_a_missing_yield_strength_is_asked_of_the_softer_body(first, second):
             f"[first]\n{of.format(first)}[second]\n{of.format(second)}"
             '[interface]\nplasticity = "expanding-cavity"\n'
         )
+
+
+OWN = 'youngs_modulus = "70 GPa", poissons_ratio = 0.3'
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "expected"),
+    [
+        ('yield_strength = "100 MPa"', 'yield_strength = "300 MPa"', "first"),
+        ('yield_strength = "300 MPa"', 'yield_strength = "100 MPa"', "second"),
+        ('yield_strength = "105 MPa"', 'yield_strength = "100 MPa"', "both"),
+        ('yield_strength = "150 MPa"', 'yield_strength = "100 MPa"', "both"),
+        ('yield_strength = "100 MPa"', 'yield_strength = "150 MPa"', "first"),
+        ('yield_strength = "100 MPa"', 'hardness = "300 MPa"', "both"),
+        ('hardness = "1 GPa"', 'hardness = "2 GPa"', "first"),
+        ('yield_strength = "100 MPa"', "", None),
+    ],
+)
+def test_which_body_yields(first, second, expected):
+    """Both yield up to 1.75 times the strength if the wall is softer, else up to 1.1 times."""
+    tables = (f'radius = "1 mm", {OWN}, {first}', f'radius = "flat", {OWN}, {second}')
+    text = "".join(
+        f"{name} = {{ {table.rstrip(', ')} }}\n"
+        for name, table in zip(("first", "second"), tables, strict=True)
+    )
+    given = '[interface]\nyield_pressure = "300 MPa"\n'
+    assert parsed(text + given).yielding().yields == expected
+    assert parsed(text + '[interface]\nyield_pressure = "elastic"\n').yielding().yields is None
+
+
+def test_two_equal_bodies_yield_alike():
+    text = f'first = {{ radius = "1 mm", {OWN} }}\n[interface]\nyield_strength = "1 GPa"\n'
+    assert parsed(text).yielding().yields == "both"

@@ -17,8 +17,8 @@ from pathlib import Path
 import numpy as np
 import solve
 from case_list import Case, all_cases, check_cases
-from indentation import loading_work, unloading_work
 from problem import crest_mesh, smooth_mesh, wave_mesh
+from works import loading_work, unloading_work
 
 HERE = Path(__file__).parent
 

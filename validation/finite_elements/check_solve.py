@@ -6,8 +6,9 @@ python -m pytest check_solve.py
 import numpy as np
 import pytest
 import solve
-from indentation import Indentation, loading_work, unloading_work
+from indentation import Indentation
 from problem import MeshSpec, Model, smooth_mesh
+from works import loading_work, unloading_work
 
 
 def _small(model):

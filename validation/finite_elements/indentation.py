@@ -8,8 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from elements import element_pass, element_pass_finite, strain_matrices
 from factor import Factor
-from problem import MeshSpec, Model, graded_coordinates
-from scipy.interpolate import PchipInterpolator
+from problem import MeshSpec, Model, graded_coordinates, hemisphere
 from scipy.sparse import csr_matrix
 
 _NEWTON_TOLERANCE = 1e-6  # residual over contact force
@@ -17,6 +16,9 @@ _MAX_ITERATIONS = 40
 _FREE_SET_ITERATIONS = 14  # later iterations change one contact node at a time
 UNLOADING_FORCE_STEP = 0.045  # drop of force per step over the largest force
 _UNLOADING_MAX_STEPS = 90
+_FINITE = ("finite", "flattening", "finite-hemisphere")
+_FLAT = ("flattening", "hemisphere", "finite-hemisphere")  # the body has the profile
+_KINEMATICS = ("small", "deformed-contact", *dict.fromkeys(_FINITE + _FLAT))
 
 
 class State(NamedTuple):
@@ -60,12 +62,14 @@ class Indentation:
         spec: mesh.
         kinematics: "small" (small strains, gap at the undeformed radius), "deformed-contact"
             (small strains, gap and normal at the deformed radius), "finite" (finite strains,
-            gap and normal at the deformed radius) or "flattening" (finite strains, the body has
-            the profile and the rigid surface is flat).
+            gap and normal at the deformed radius), "flattening" (finite strains, the body has
+            the profile and the rigid surface is flat), or "hemisphere" and "finite-hemisphere"
+            (small and finite strains; the body is a hemisphere whose equator stays plane, and the
+            rigid surface is flat).
     """
 
     def __init__(self, model: Model, spec: MeshSpec, kinematics: str = "small"):
-        if kinematics not in ("small", "deformed-contact", "finite", "flattening"):
+        if kinematics not in _KINEMATICS:
             raise ValueError(f"unknown kinematics {kinematics!r}")
         self.model, self.spec, self.kinematics = model, spec, kinematics
         E, nu = model.youngs_modulus, model.poissons_ratio
@@ -88,6 +92,9 @@ class Indentation:
             slope = model.profile_slopes(np.array([limit]))[0][0]
             shift = model.profile(inner) + slope * decay * (1 - np.exp((inner - r) / decay))
             shift = shift * np.exp(-z / (4 * spec.uniform_radius))
+        bottom = z == y[-1]
+        if kinematics.endswith("hemisphere"):
+            r, z = hemisphere(r / x[-1], z / y[-1], model.radius)
         self.coordinates = np.stack([r, z + shift], axis=1).ravel()
         self.ndof, self.conn, self.elements = 2 * nr * nz, conn, len(conn)
         self.B = np.empty((self.elements, 4, 4, 8))
@@ -115,6 +122,10 @@ class Indentation:
         self.per_force = np.zeros(self.ndof)
         self.per_force[2 * far], self.per_force[2 * far + 1] = u_r, u_z
         self.fixed = np.zeros(self.ndof, bool)
+        if kinematics.endswith("hemisphere"):
+            self.per_force[:], far = 0.0, np.array([], int)
+            self.fixed[2 * np.flatnonzero(bottom) + 1] = True
+            self.surface_r = r[self.surface_dof // 2]
         self.fixed[axis] = self.fixed[2 * far] = self.fixed[2 * far + 1] = True
         self.per_force[axis] = 0.0
 
@@ -135,7 +146,7 @@ class Indentation:
         r = self.surface_r[:-1]
         if self.kinematics == "small":
             return self.model.profile(r), np.zeros_like(r), np.zeros_like(r)
-        if self.kinematics == "flattening":
+        if self.kinematics in _FLAT:
             return self.coordinates[self.candidates], np.zeros_like(r), np.zeros_like(r)
         r = r + u[self.candidates - 1]
         return (self.model.profile(r), *self.model.profile_slopes(r))
@@ -161,7 +172,7 @@ class Indentation:
             self.kdata,
         )
         old = state.tensor, state.equivalent_plastic_strain
-        if self.kinematics in ("finite", "flattening"):
+        if self.kinematics in _FINITE:
             element_pass_finite(u, state.u, self.coordinates, self.conn, *old, *material)
         else:
             element_pass(u, self.B, self.w, self.conn, *old, *material)
@@ -268,7 +279,7 @@ class Indentation:
         the two nearest free nodes gives the edge, limited to the element that holds it.
         """
         x, active = self.surface_r[:-1], state.active
-        if self.kinematics != "small":
+        if self.kinematics not in ("small", "hemisphere"):
             x = x + state.u[self.candidates - 1]
         profile = self._gap_profile(state.u)[0]
         gap = np.maximum(state.u[self.candidates] + profile - state.indentation, 0.0) ** (2 / 3)
@@ -360,24 +371,3 @@ class Indentation:
     def close(self) -> None:
         """Free the memory of the factorisation."""
         self.factor.close()
-
-
-def loading_work(indentation, force, first_exponent=1.5) -> np.ndarray:
-    """Return ∫F dδ (J) up to each point, with F a power of δ between two points.
-
-    Args:
-        indentation: depths (m), increasing, the first above 0.
-        force: forces (N).
-        first_exponent: F ∝ δ^exponent below the first point.
-    """
-    d, f = np.asarray(indentation), np.asarray(force)
-    n = np.log(f[1:] / f[:-1]) / np.log(d[1:] / d[:-1])
-    parts = (f[1:] * d[1:] - f[:-1] * d[:-1]) / (n + 1)
-    return np.concatenate([[0], np.cumsum(parts)]) + f[0] * d[0] / (first_exponent + 1)
-
-
-def unloading_work(indentation, force) -> float:
-    """Return ∫F dδ (J) over an unloading curve (m, N) by monotone cubic interpolation."""
-    d, f = np.asarray(indentation)[::-1], np.asarray(force)[::-1]
-    keep = np.concatenate([[True], np.diff(d) > 0])
-    return float(PchipInterpolator(d[keep], f[keep]).integrate(d[0], d[-1]))

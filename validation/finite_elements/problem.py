@@ -124,6 +124,19 @@ def graded_coordinates(spec: MeshSpec, uniform: float, grading: float) -> np.nda
     return np.array(x)
 
 
+def hemisphere(x: np.ndarray, y: np.ndarray, radius: float) -> tuple[np.ndarray, np.ndarray]:
+    """Map the unit square onto a hemisphere that is loaded at its pole; return r and depth (m).
+
+    The side y = 0 becomes the sphere up to 45° from the pole, x = 1 the rest of the sphere, and
+    y = 1 the equator. Near the pole the map only scales.
+    """
+    top, side = x * np.pi / 4, (1 + y) * np.pi / 4
+    r = (1 - y) * np.sin(top) + y * x + x * np.sin(side) - x * ((1 - y) * np.sqrt(0.5) + y)
+    depth = (1 - y) * (1 - np.cos(top)) + (1 - x) * y + x * (1 - np.cos(side))
+    depth -= x * (1 - y) * (1 - np.sqrt(0.5))
+    return radius * r, radius * depth
+
+
 def smooth_mesh(
     model: Model, omega_max: float, elements: float = 60, refinement: int = 1
 ) -> MeshSpec:

@@ -20,8 +20,9 @@ for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 import numba as nb  # noqa: E402
 import numpy as np  # noqa: E402
 import scipy  # noqa: E402
-from indentation import UNLOADING_FORCE_STEP, Indentation, loading_work, unloading_work  # noqa: E402
+from indentation import UNLOADING_FORCE_STEP, Indentation  # noqa: E402
 from problem import MeshSpec, Model, load_steps, smooth_mesh  # noqa: E402
+from works import loading_work, unloading_work  # noqa: E402
 
 
 def run_range(

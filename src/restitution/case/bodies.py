@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
@@ -26,6 +26,7 @@ from restitution.contact.contact import (
     Adhesion,
     Approach,
     Plasticity,
+    Yields,
     require_cohesive,
 )
 from restitution.contact.detachment import Detachment
@@ -101,6 +102,8 @@ class BodyTable(Table):
 
 YieldRule = tuple[float, Literal["yield_strength", "hardness"]]
 MOST_FRICTION = 10.0  # largest coefficient of friction; a larger value must be a mistake
+# Ratio of the strengths of two bodies below which both yield, and below which they are equal.
+_BOTH_YIELD, _EQUAL = FULL_CONSTRAINT / 1.6, 1.1
 # Models of plasticity that limit the contact pressure to a constant.
 _CONSTANT_BOUND = ("equilibrium", "truncated")
 
@@ -131,7 +134,7 @@ class Yielding:
     """The yield model of a contact.
 
     `source` says in words where the values come from. The other fields are arguments of `Contact`:
-    the name of the model, and pressures in Pa.
+    the name of the model, pressures in Pa, and the body that yields.
     """
 
     source: str
@@ -139,6 +142,7 @@ class Yielding:
     yield_pressure: float = math.inf
     yield_strength: float = math.inf
     tangent_modulus: float = 0.0
+    yields: Yields | None = None
 
     @property
     def hardness(self) -> float:
@@ -221,6 +225,11 @@ class InterfaceTable(Table):
         deformation. If only its hardness is known (as for glass), it yields at this hardness.
         Raises `CaseError` if a value that the model needs is unknown.
         """
+        model = self._model(first, second)
+        elastic = math.isinf(model.hardness)
+        return replace(model, yields=None if elastic else yielding_body(first, second))
+
+    def _model(self, first: BodyTable, second: BodyTable) -> Yielding:
         if self.yield_pressure is not None or self.plasticity in _CONSTANT_BOUND:
             return self._at_a_pressure(first, second)
         if self.yield_strength is not None:
@@ -287,6 +296,31 @@ class InterfaceTable(Table):
                 )
         pressure, source = min(found)
         return Yielding(source, model, yield_pressure=pressure)
+
+
+def yielding_body(first: BodyTable, second: BodyTable) -> Yields | None:
+    """Say which body yields: the softer one, or both; None if a strength is unknown.
+
+    The harder body stays elastic if it first yields (at 1.6 Y) above the pressure of full
+    plasticity of the softer one. Below that, it counts as yielding if both are nearly equal, or if
+    the softer body is the larger one, whose `model_error` is smaller.
+    """
+    if first == second:
+        return "both"
+    p, q = _full_pressure(first), _full_pressure(second)
+    if p is None or q is None:
+        return None
+    softer: Yields = "first" if p < q else "second"
+    ratio = max(p, q) / min(p, q)
+    sizes = [body.radius or math.inf for body in (first, second)]
+    larger = sizes[0] >= sizes[1] if softer == "first" else sizes[1] >= sizes[0]
+    return "both" if ratio < (_BOTH_YIELD if larger else _EQUAL) else softer
+
+
+def _full_pressure(body: BodyTable) -> float | None:
+    if body.yield_strength is not None:
+        return FULL_CONSTRAINT * body.yield_strength
+    return body.hardness
 
 
 def _named(name: str, body: BodyTable) -> str:

@@ -32,6 +32,7 @@ from restitution.theory import JKR
 Plasticity = Literal["expanding-cavity", "equilibrium", "truncated"]
 Approach = Literal["equilibrium", "hertzian", "pull-increments"]
 Adhesion = Literal["jkr", "cohesive"]
+Yields = Literal["first", "second", "both"]
 EQUILIBRIUM_SEPARATION = 0.3e-9  # default range of the attraction z₀ (m)
 
 # Ratio of pressure to yield strength of a fully plastic contact (Tabor 1951).
@@ -82,6 +83,7 @@ class Contact:
         periodic: Whether both bodies are flat and the surface repeats without end along x and y. A
             periodic contact is elastic or has a constant pressure bound (`equilibrium`). The bodies
             attract each other over a finite range (`cohesive`) or not at all.
+        yields: Body that yields; None if unknown. Only `model_error` depends on it.
 
     Raises:
         CaseError: A value is invalid, two values exclude each other, or `pair` or `surface` has a
@@ -100,6 +102,7 @@ class Contact:
     adhesion: Adhesion = "jkr"
     equilibrium_separation: float = EQUILIBRIUM_SEPARATION
     periodic: bool = False
+    yields: Yields | None = None
 
     def __post_init__(self) -> None:
         for name, value, known in (
@@ -107,6 +110,7 @@ class Contact:
             ("approach", self.approach, get_args(Approach)),
             ("detachment", self.detachment, get_args(Detachment)),
             ("adhesion", self.adhesion, get_args(Adhesion)),
+            ("yields", self.yields, (None, *get_args(Yields))),
         ):
             if value not in known:
                 names = ", ".join(filter(None, known))

@@ -8,6 +8,10 @@ bodies and for asperities. The differences of `expanding-cavity` also depend on 
 asperities ψ = E* S/Y, with the rms slope S and the yield strength Y. Outside the range of the
 finite element results, the nearest value is used and may be too small.
 
+These references are half-spaces. A sphere that yields returns less energy, the less the larger its
+contact radius a over its radius R. `depth_difference` adds this difference. It comes from finite
+elements of hemispheres and of half-spaces with finite strains (validation/bodies.csv).
+
 With `adhesion = "jkr"` there is a second error. JKR theory neglects the range of the attraction and
 therefore dissipates too much energy. The second error is computed from a table of the energy that
 smooth elastic spheres dissipate in one cycle of contact. The table gives this energy as a fraction
@@ -42,6 +46,9 @@ _STEEPNESS, _GROWING = (0.0, 4.0, 6.0), (0.03, 0.035, 0.045)
 # Values of the COR due to plasticity alone, and a factor for each of them. The largest difference
 # (`_GROWING`) is multiplied by this factor.
 _NEAR_ONE = (0.94, 0.98, 1.0), (1.0, 0.5, 0.2)
+# Ratio a/R above which finite elements of a sphere differ from those of a half-space, and the
+# largest difference of COR per a/R beyond it if a sphere or a flat body yields.
+_SHALLOW, _OF_SPHERE, _OF_FLAT = 0.02, 0.33, 0.06
 # Values of the Tabor parameter, and the energy that smooth elastic spheres dissipate in a cycle of
 # contact, as a fraction of the energy dissipated in JKR theory. The fractions come from an
 # axisymmetric reference solution.
@@ -96,13 +103,16 @@ def _plasticity_error(state: State, restitution: float) -> float:
         return 0.0
     stored, lost = state.stored_energy, state.plastic_work
     returned = stored / (stored + lost) if stored + lost > 0 else 0.0
-    error = largest_difference(state, math.sqrt(returned))
+    due_to_yield = math.sqrt(returned)
+    error = largest_difference(state, due_to_yield)
+    if deeper := depth_difference(state, due_to_yield):
+        error += deeper / due_to_yield if due_to_yield else 1.0
     # The error of the model of plasticity changes only the plastic loss of energy, and the adhesive
     # loss stays the same. Let e_p be the COR that the plastic loss alone would give. The square of
     # the actual COR then changes by the same amount as e_p².
     high, low = (
         math.sqrt(max(restitution**2 + returned * ((1 + off) ** 2 - 1), 0.0))
-        for off in (error, -error)
+        for off in (error, -min(error, 1.0))
     )
     return max(min(high, 1.0) - restitution, restitution - low)
 
@@ -129,3 +139,22 @@ def relative_model_error(plasticity: str, restitution: float, steepness: float) 
         return float(np.interp(restitution, *_CONSTANT[plasticity]))
     error = np.interp(steepness, _STEEPNESS, _GROWING) * np.interp(restitution, *_NEAR_ONE)
     return float(error)
+
+
+def depth_difference(state: State, restitution: float) -> float:
+    """Largest difference of COR between the bodies and half-spaces at the depth of `state`.
+
+    If both bodies yield, each dissipates half of the energy. If it is unknown which body yields,
+    the larger difference is used. `restitution` is the COR that plasticity alone would give.
+    """
+    pair, yields = state.contact.pair, state.contact.yields
+    radius = math.sqrt(state.contact_area / math.pi)
+    flat = _OF_FLAT * (radius / pair.radius - _SHALLOW)
+    first, second = (
+        max(_OF_SPHERE * (radius / body.radius - _SHALLOW), flat, 0.0)
+        for body in (pair.first, pair.second)
+    )
+    parts = {"first": first, "second": second, "both": 0.5 * (first + second)}
+    largest = max(parts.values()) if yields is None else parts[yields]
+    # A body that hardly yields differs little: elastic bodies return all energy.
+    return largest * min(1.0, 2 * (1 - restitution**2))

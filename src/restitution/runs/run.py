@@ -271,6 +271,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> d
             **asdict(contact.grid),
             "refine": case.grid.refine,
             "yield_pressure": case.yielding().source,
+            "yields": contact.yields or "unknown",
         },
         "materials": _materials(case),
         "conventions": {
