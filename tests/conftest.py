@@ -16,7 +16,8 @@ from hypothesis import settings
 
 import instrument_formats
 from restitution.laws.force_law_fits import fitted_laws
-from restitution.laws.law import Law, Particle, Point
+from restitution.laws.law import Law, Point
+from restitution.laws.particle import Particle
 from restitution.numerics import kernels
 
 SOURCES = Path(__file__).parents[1] / "src" / "restitution" / "numerics"

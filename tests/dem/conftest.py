@@ -12,7 +12,7 @@ from dataclasses import replace
 import pytest
 
 from restitution.dem.pair_table import PairTable, pair_table
-from restitution.laws.law import Particle
+from restitution.laws.particle import Particle
 
 STEEL = Particle(
     name="steel", radius=0.4e-3, youngs_modulus=200e9, poissons_ratio=0.3, density=7800.0

@@ -16,8 +16,8 @@ from restitution.dem.codes import yade as to_yade
 from restitution.dem.export import CODES, export
 from restitution.dem.friction import STIFFNESS_SHARE
 from restitution.dem.pair_table import pair_table
-from restitution.laws.law import Particle
 from restitution.laws.oblique import collide_obliquely
+from restitution.laws.particle import Particle
 from tolerance import approx
 
 STUDIES = Path(__file__).parents[2] / "docs" / "studies"

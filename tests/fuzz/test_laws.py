@@ -19,8 +19,9 @@ from restitution.dem.export import CODES, export
 from restitution.errors import DomainError, RestitutionError
 from restitution.laws.compact_fit import compact_fit
 from restitution.laws.force_law_fits import fitted_laws
-from restitution.laws.law import Law, Particle, Point
+from restitution.laws.law import Law, Point
 from restitution.laws.law_files import law_rows
+from restitution.laws.particle import Particle
 from restitution.plots.law import law_figure
 from restitution.plots.static import draw
 

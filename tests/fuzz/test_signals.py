@@ -14,7 +14,8 @@ import sys
 
 import pytest
 
-from restitution.results.reader import RunResults, StudyResults, read_netcdf
+from restitution.results.reader import RunResults, StudyResults
+from restitution.results.stored_files import read_netcdf
 
 COUNT = max(1, round(2 * float(os.environ.get("FUZZ", "1")) + 1))
 

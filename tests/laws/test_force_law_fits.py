@@ -7,7 +7,7 @@ import pytest
 
 from restitution.laws import force_law_fits
 from restitution.laws.force_law_fits import NAMES, fitted_laws, too_few_points
-from restitution.laws.law import Particle
+from restitution.laws.particle import Particle
 from restitution.theory import EEPA, JKR, MDR, Luding, ThorntonNing, WaltonBraun
 from tolerance import approx
 

@@ -8,7 +8,7 @@ import pytest
 from restitution.errors import CaseError
 from restitution.laws import theories as room
 from restitution.laws.force_law_fits import fitted_laws
-from restitution.laws.law import Particle
+from restitution.laws.particle import Particle
 from restitution.theory import Brilliantov
 from theory_cases import ELASTIC, V, by_name, case_of
 from tolerance import approx

@@ -23,7 +23,8 @@ from restitution.dem.pair import Pair, contact_time
 from restitution.dem.pair_table import PairTable
 from restitution.display import quantity
 from restitution.errors import CaseError, one_line
-from restitution.laws.law import Law, Particle
+from restitution.laws.law import Law
+from restitution.laws.particle import Particle
 
 STEPS = 5000  # number of time steps in a contact
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from restitution.laws.law import FittedLaw, Law, Particle
+from restitution.laws.law import FittedLaw, Law
+from restitution.laws.particle import Particle
 
 FRICTION = 0.5  # coefficient of friction of pairs whose case gives none; users should replace it
 

@@ -10,7 +10,8 @@ import numpy as np
 
 from restitution.display import quantity
 from restitution.errors import CaseError
-from restitution.laws.law import Law, Particle
+from restitution.laws.law import Law
+from restitution.laws.particle import Particle
 
 # Largest difference of e at which two laws of the same pair, such as those of the same case with
 # `first` and `second` exchanged, count as one.

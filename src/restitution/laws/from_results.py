@@ -13,8 +13,9 @@ from restitution.case.bodies import BodyTable
 from restitution.errors import CaseError, OutputError, first_problem, one_line
 from restitution.laws.compact_fit import compact_fit
 from restitution.laws.force_law_fits import Begin, fitted_laws
-from restitution.laws.law import Conventions, Law, Particle, Point
+from restitution.laws.law import Conventions, Law, Point
 from restitution.laws.law_files import LAW_FILE
+from restitution.laws.particle import Particle
 from restitution.results.reader import EnsembleResults, RunResults, read_run
 from restitution.results.total_error import total
 

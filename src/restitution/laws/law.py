@@ -6,18 +6,19 @@ Between the computed velocities COR is interpolated (`interpolation`). Nothing i
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Annotated, Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from pydantic import ConfigDict, Field, TypeAdapter, model_validator
+from pydantic import Field, TypeAdapter, model_validator
 from pydantic.dataclasses import dataclass as checked_dataclass
 
 from restitution.case.quantities import read_positive
 from restitution.display import counted, quantity, summary_html, summary_text, with_error
-from restitution.errors import CaseError, DomainError, one_line
+from restitution.errors import CaseError, DomainError
 from restitution.laws.interpolation import RatioCurve
+from restitution.laws.particle import STRICT, NotNegative, Particle, Positive, Share
 
 Array = NDArray[np.float64]
 
@@ -26,87 +27,9 @@ LOSS = 1e-3
 # Largest relative difference of velocities that count as equal. If a run integrates the loading
 # work numerically, it reaches the velocities of its case only to within 1e-4 (`solve_at_velocity`).
 _SAME = 1.01e-4
-_DIGITS = 1e-9  # largest relative difference of equal values of two bodies
-_UNNAMED = ("first", "second")  # names of bodies whose case names no material
-
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
-Share = Annotated[float, Field(ge=0, le=1)]
 
 
-_STRICT = ConfigDict(extra="forbid", allow_inf_nan=False)
-
-
-@checked_dataclass(frozen=True, kw_only=True, config=_STRICT)
-class Particle:
-    """One body of the pair, in SI units. `radius` is None for a flat wall.
-
-    `name` is the material, or "first" or "second" if the case names none. In a mixture,
-    `number_fraction` is the number of particles of this size divided by the number of all particles
-    of the same material.
-    """
-
-    name: str
-    radius: Positive | None
-    youngs_modulus: Positive
-    poissons_ratio: Annotated[float, Field(gt=-1, le=0.5)]
-    density: Positive | None
-    number_fraction: Share | None = None
-    yield_strength: Positive | None = None
-    hardness: Positive | None = None
-
-    @property
-    def material(self) -> str | None:
-        """The name of the material; None if the case names none."""
-        return None if self.name in _UNNAMED else self.name
-
-    @property
-    def distinguishing(self) -> tuple[str | float | None, ...]:
-        """Values that tell two bodies apart only if both bodies have them."""
-        density = None if self.wall else self.density  # the density of a wall has no effect
-        return self.material, density, self.yield_strength, self.hardness
-
-    def may_equal(self, other: Particle) -> bool:
-        """Whether no value of both bodies differs, except the number fraction."""
-        ours = self.radius, self.youngs_modulus, self.poissons_ratio
-        theirs = other.radius, other.youngs_modulus, other.poissons_ratio
-        known = zip(self.distinguishing, other.distinguishing, strict=True)
-        return all(map(_same, ours, theirs)) and all(
-            _same(one, two) for one, two in known if one is not None and two is not None
-        )
-
-    def merged(self, other: Particle) -> Particle:
-        """This body with the values of `other` where its own are unknown."""
-        values = {
-            key: value
-            for key, value in vars(other).items()
-            if value is not None and getattr(self, key) is None
-        }
-        return replace(self, **values)
-
-    def described(self) -> str:
-        """Name, size, and the values that tell bodies with equal elastic constants apart."""
-        known = [
-            f"{name} {quantity(value, 'Pa')}"
-            for name, value in (("Y", self.yield_strength), ("H", self.hardness))
-            if value is not None
-        ]
-        return ", ".join([str(self), *known])
-
-    @property
-    def wall(self) -> bool:
-        """Whether the body is a flat wall."""
-        return self.radius is None
-
-    def __str__(self) -> str:
-        """Name and size, for messages and comments."""
-        # "um", because exports contain this text, and some DEM codes warn of non-ASCII comments.
-        radius = quantity(self.radius, "m").replace("µ", "u")
-        size = "flat" if self.radius is None else f"R = {radius}"
-        return f"{one_line(self.name)} ({size})"
-
-
-@checked_dataclass(frozen=True, kw_only=True, config=_STRICT)
+@checked_dataclass(frozen=True, kw_only=True, config=STRICT)
 class Point:
     """The result at one impact velocity, in SI units.
 
@@ -134,7 +57,7 @@ class Point:
         return self
 
 
-@checked_dataclass(frozen=True, kw_only=True, config=_STRICT)
+@checked_dataclass(frozen=True, kw_only=True, config=STRICT)
 class CompactFit:
     """Fit e² = Σ c_k L^k − s/V², L = ln(V/V₀)/w, between `lowest` and `highest` velocity.
 
@@ -179,7 +102,7 @@ class CompactFit:
         return np.where(inside, np.sqrt(e2), np.nan)
 
 
-@checked_dataclass(frozen=True, kw_only=True, config=_STRICT)
+@checked_dataclass(frozen=True, kw_only=True, config=STRICT)
 class FittedLaw:
     """A force law of DEM codes, fitted to the computed COR.
 
@@ -203,7 +126,7 @@ class FittedLaw:
     pull_off_misfit: float | None = None
 
 
-@checked_dataclass(frozen=True, kw_only=True, config=_STRICT)
+@checked_dataclass(frozen=True, kw_only=True, config=STRICT)
 class Conventions:
     """Definitions of the quantities of a law, in words."""
 
@@ -223,7 +146,7 @@ class Estimate:
     resolved: bool
 
 
-@checked_dataclass(frozen=True, kw_only=True, config=_STRICT)
+@checked_dataclass(frozen=True, kw_only=True, config=STRICT)
 class Law:
     """Coefficient of restitution against impact velocity for one pair, in SI units.
 
@@ -399,13 +322,6 @@ def velocity_of(text: str) -> float:
         return read_positive(text, "m/s")
     except ValueError as error:
         raise CaseError(f"velocity: {error}") from None
-
-
-def _same(one: str | float | None, other: str | float | None) -> bool:
-    """Whether two values are equal within rounding."""
-    if isinstance(one, float) and isinstance(other, float):
-        return math.isclose(one, other, rel_tol=_DIGITS)
-    return one == other
 
 
 def _root(ratio: float) -> float:

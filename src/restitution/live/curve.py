@@ -24,7 +24,7 @@ from restitution.live.figures import (
     live_dataset,
     surface_content,
 )
-from restitution.results.writer import curve_row
+from restitution.results.curve_row import curve_row
 from restitution.runs.depths import collision_at, loaded_depths
 from restitution.runs.messages import input_warnings, require_possible
 from restitution.runs.refinement import settled, with_chosen_adhesion

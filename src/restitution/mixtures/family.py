@@ -23,7 +23,7 @@ from restitution.case.derived import deepest_indentation
 from restitution.contact.bodies import Body, Pair
 from restitution.contact.checks.resolution import predicted_radius
 from restitution.errors import CaseError, RestitutionError
-from restitution.laws.law import Particle
+from restitution.laws.particle import Particle
 from restitution.mixtures.mixture_file import Component, Mixture
 
 _WIDTH = 2.8  # grid width divided by the upper estimate of the contact radius (`_half_width`)

@@ -9,7 +9,7 @@ from restitution.laws.law import Law
 from restitution.laws.law_files import read_laws
 from restitution.pages.page import Cell, Drawing, Listing, Page, Table, write_page
 from restitution.plots.mixture import families_of, mixture_figure
-from restitution.results.reader import read_json, read_text
+from restitution.results.stored_files import read_json, read_text
 
 
 def write_mixture_page(out: Path) -> Path:

@@ -19,7 +19,7 @@ from restitution.plots.surface import (
     spectrum_figure,
     surface_map,
 )
-from restitution.results.reader import read_json, read_netcdf
+from restitution.results.stored_files import read_json, read_netcdf
 from restitution.surfaces import Surface
 from restitution.surfaces.psd import directed_spectra
 from restitution.surfaces.surface import is_periodic

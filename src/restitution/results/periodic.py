@@ -19,8 +19,8 @@ from restitution.contact.state import Array, State
 from restitution.display import quantity, summary_html, summary_text
 from restitution.results.checksums import check_file
 from restitution.results.coordinates import with_coordinates
-from restitution.results.reader import read_json, read_maps, read_netcdf
 from restitution.results.schema import PERIODIC_FILE, Column
+from restitution.results.stored_files import read_json, read_maps, read_netcdf
 from restitution.results.tables import read_cells, read_numbers
 from restitution.results.writer import curve_variables, dataset_with_maps
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -23,7 +22,6 @@ from restitution.display import counted, quantity, summary_html, summary_text
 from restitution.errors import CaseError, OutputError, first_problem
 from restitution.results.checksums import check_file
 from restitution.results.coordinates import with_coordinates
-from restitution.results.interruption import hold_signals
 from restitution.results.older import REQUIRED, as_now, dataset_as_now
 from restitution.results.schema import (
     ALL_COLUMNS,
@@ -34,12 +32,12 @@ from restitution.results.schema import (
     STATUS,
     Column,
 )
+from restitution.results.stored_files import opened, read_json, read_maps, read_netcdf, read_text
 from restitution.results.tables import (
     check_number,
     damaged,
     read_cells,
     read_numbers,
-    reading,
     require_restitution,
 )
 
@@ -152,7 +150,7 @@ class RunResults:
 
     def smooth(self) -> xr.Dataset:
         """The smooth bodies' variables of `results.nc`, and all attributes of the file."""
-        with _opened(self._netcdf) as stored:
+        with opened(self._netcdf) as stored:
             return stored[[name for name in stored if str(name).startswith("smooth_")]].load()
 
     @cached_property
@@ -205,7 +203,7 @@ class RunResults:
 
     @cached_property
     def _case_and_depths(self) -> tuple[str, int | None]:
-        with _opened(self._netcdf) as stored:
+        with opened(self._netcdf) as stored:
             case, depths = stored.attrs.get("case"), stored.sizes.get("indentation_max")
         if not isinstance(case, str):
             raise damaged(self._netcdf, "the attribute case is missing")
@@ -349,53 +347,3 @@ def _read_table(path: Path, required: Iterable[str], columns: Mapping[str, Colum
     rows = [as_now(read_numbers(path, line, row, columns)) for line, row in enumerate(cells, 2)]
     check_file(path)
     return Curve(rows, cells)
-
-
-def read_text(path: Path) -> str:
-    """Read a text file of results. Raises `OutputError`."""
-    with reading(path):
-        text = path.read_text(encoding="utf-8")
-    check_file(path)
-    return text
-
-
-def read_json(path: Path) -> dict[str, Any]:
-    """Read a JSON file that contains an object. Raises `OutputError`."""
-    with reading(path):
-        content = json.loads(read_text(path))
-    if not isinstance(content, dict):
-        raise damaged(path, "it is not a JSON object")
-    return content
-
-
-def read_netcdf(path: Path) -> xr.Dataset:
-    """Load a netCDF file into memory. Raises `OutputError`."""
-    with _opened(path) as stored:
-        return stored.load()
-
-
-def read_maps(folder: Path) -> xr.Dataset:
-    """Load the maps of every depth into memory. Raises `OutputError`."""
-    path = folder / "maps.nc"
-    if (folder / "results.nc").is_file() and not path.is_file():
-        raise OutputError(
-            f'{folder}: holds maps of the deepest depth only; write maps = "all" at the top of the '
-            "case file, and run it again"
-        )
-    return with_coordinates(read_netcdf(path))
-
-
-@contextmanager
-def _opened(path: Path) -> Iterator[xr.Dataset]:
-    """Open a netCDF file, and delay signals, which could leave the netCDF library locked."""
-    with reading(path):
-        # Raise errors of the operating system here, because the netCDF library would hide them.
-        open(path, "rb").close()
-    check_file(path)
-    try:
-        with hold_signals(), xr.open_dataset(path, engine="netcdf4") as stored:
-            yield stored
-    except MemoryError:
-        raise
-    except Exception as error:  # a damaged file may cause any exception
-        raise damaged(path, f"{type(error).__name__}: {error}") from None

@@ -20,8 +20,9 @@ from restitution.errors import OutputError
 from restitution.results.coordinates import with_coordinates
 from restitution.results.interruption import hold_signals
 from restitution.results.locking import locked
-from restitution.results.reader import RunResults, read_json, read_text
+from restitution.results.reader import RunResults
 from restitution.results.schema import ALL_COLUMNS, COLUMNS
+from restitution.results.stored_files import read_json, read_text
 from restitution.results.writer import (
     make_folder,
     replace_file,

@@ -27,7 +27,7 @@ from restitution.dem.friction import STIFFNESS_SHARE, friction_note
 from restitution.dem.pair import FRICTION, Pair, contact_time
 from restitution.dem.pair_table import PairTable
 from restitution.dem.velocity_matching import law_points
-from restitution.laws.law import Particle
+from restitution.laws.particle import Particle
 
 CODE = "YADE"
 LOWEST = 0.01  # lowest e for which the fit of betan is valid
