@@ -92,6 +92,7 @@ bench: $(VENV)/test.installed  ## time whole curves, one solve against the size 
 	$(BIN)/python benchmarks/scaling.py
 	$(BIN)/python benchmarks/growing_bound.py
 	$(BIN)/python benchmarks/start.py
+	$(BIN)/python benchmarks/busy.py
 
 PEERS := $(patsubst benchmarks/peers/%.txt,.venv-peers/%/installed,$(wildcard benchmarks/peers/*.txt))
 

@@ -41,6 +41,11 @@ NOT_RUN = {
         "needs a simulation of its own"
     ),
     ("docs/mixture.md", "restitution mixture mixture.toml -o powders"): "takes minutes",
+    (
+        "docs/tutorials/sticking.md",
+        'restitution new --powder --set material=silica --set radius="5 um" --set rms="10 nm" '
+        "-o powder.toml",
+    ): "takes minutes",
     ("docs/mixture.md", 'title = "Lactose and glass in a steel drum"'): "is no case",
     (
         "docs/fit.md",

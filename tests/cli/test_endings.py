@@ -113,7 +113,9 @@ def test_a_total_error_that_cannot_be_computed_is_said(cli, case, tmp_path, monk
 def test_an_unloading_curve_that_misses_the_stored_energy_is_warned_of(
     cli, case, tmp_path, monkeypatch
 ):
-    monkeypatch.setattr(run, "_BALANCE", 1e-9)
+    from restitution.runs import result_warnings
+
+    monkeypatch.setattr(result_warnings, "_BALANCE", 1e-9)
     status, _, said = cli("run", case, "-o", tmp_path / "out")
     assert status == 0
     assert "the work of 2 of 2 unloading curves differs from the stored energy, at worst" in said
@@ -217,15 +219,13 @@ def test_interruption_keeps_what_was_computed(case_text, tmp_path, sent, status)
     assert not list(out.glob(".*.part"))
 
 
-@pytest.mark.parametrize("where", ["adhesive_spacing", "add"])
-def test_interruption_between_what_belongs_to_a_row(case_text, tmp_path, monkeypatch, where):
+def test_interruption_between_what_belongs_to_a_row(case_text, tmp_path, monkeypatch):
     """The third depth is computed, and is either kept or not."""
     from restitution.case.case_file import parse_case
     from restitution.results.writer import ResultsFolder
     from restitution.runs import run
 
-    owner = run if where == "adhesive_spacing" else ResultsFolder
-    calls, real = [], getattr(owner, where)
+    calls, real = [], ResultsFolder.add
 
     def interrupted(*args):
         calls.append(args)
@@ -233,7 +233,7 @@ def test_interruption_between_what_belongs_to_a_row(case_text, tmp_path, monkeyp
             raise KeyboardInterrupt
         return real(*args)
 
-    monkeypatch.setattr(owner, where, interrupted)
+    monkeypatch.setattr(ResultsFolder, "add", interrupted)
     out = ResultsFolder(tmp_path / "out")
     with pytest.raises(KeyboardInterrupt):
         run.run_case(parse_case(case_text), case_text, tmp_path, out)

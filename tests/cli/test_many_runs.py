@@ -86,7 +86,7 @@ def test_a_grid_that_is_found(cli, case_text, tmp_path, verb):
     assert status == 0
     assert rows_of(tmp_path / "out" / "curve.csv")[0]["resolved"] == "true"
     status, said, _ = cli("check", tmp_path / "case.toml")
-    assert "before refine" in said
+    assert 'or more (refine = "auto")' in said
 
 
 def test_what_cannot_converge_is_refused(refused, case_text, tmp_path):

@@ -106,3 +106,43 @@ def test_an_invalid_study_is_refused(cli, refused, tmp_path):
     cli("new", "--study", "-o", file)
     file.write_text(file.read_text().replace('"0.1 um"]', '"0.1 kg"]'))
     assert 'roughness.rms = "0.1 kg"' in refused("check", file)
+
+
+POWDER = ("--set", "radius=2 um", "--set", "rms=1 nm", "--set", "correlation_length=0.1 um")
+
+
+def test_a_powder_is_resolved_at_every_velocity(cli, tmp_path):
+    file = tmp_path / "powder.toml"
+    assert cli("new", "--powder", *POWDER, "-o", file)[0] == 0
+    text = file.read_text()
+    assert 'title = "silica, 2 um, Rq 1 nm"' in text
+    status, said, warned = cli("check", file)
+    assert status == 0
+    assert "The case is valid." in said, warned
+    low = re.search(r'from = "(.+)"', text)[1]
+    text = re.sub(r"from = .*\nto = .*\nsteps = 6", f'velocity = ["{low}", "0.1 m/s"]', text)
+    file.write_text("total_error = false\n" + text)
+    status, said, warned = cli("run", file, "-o", tmp_path / "out")
+    assert status == 0, warned
+    assert "not resolved" not in warned
+    assert re.findall(r" (yes|no) \n", said) == ["yes", "yes"]
+    assert "pull-off force" in said
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        (("--set", "diameter=2 um", "--powder"), '"diameter=2 um" should be KEY=VALUE with one of'),
+        (("--set", "radius", "--powder"), "should be KEY=VALUE"),
+        (("--set", "radius=5", "--powder"), '"5" has no unit'),
+        (("--set", "radius=5 um"), "--set: belongs to --powder"),
+        (("--powder", "--dem"), "choose one of them"),
+        (
+            ("--set", "radius=50 um", "--set", "rms=200 nm", "--powder"),
+            "does not contain the contact",
+        ),
+    ],
+)
+def test_a_powder_that_cannot_be_is_refused(refused, tmp_path, given, words):
+    assert words in refused("new", *given, "-o", tmp_path / "powder.toml")
+    assert not (tmp_path / "powder.toml").exists()

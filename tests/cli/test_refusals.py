@@ -340,7 +340,7 @@ def test_what_is_larger_than_the_particle(refused_case, change, words, verb):
 def test_other_kinds_of_files_are_named(refused, tmp_path):
     (tmp_path / "mix.toml").write_text('[materials.a]\nmaterial = "steel"\nradius = "1 mm"\n')
     said = refused("run", tmp_path / "mix.toml", "-o", tmp_path / "out")
-    assert "this is the file of a mixture, not a case; use `restitution mixture`" in said
+    assert "this is a mixture: use `restitution mixture FILE`" in said
     (tmp_path / "m.csv").write_text("velocity_m_per_s,restitution\n0.1,0.8\n")
     said = refused("run", tmp_path / "m.csv", "-o", tmp_path / "out")
     assert "this is a table of values, not a case file: give the case file" in said

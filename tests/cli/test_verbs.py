@@ -16,8 +16,8 @@ from tolerance import approx
 COLUMNS = """
 max_indentation_m force_N contact_area_m2 stored_energy_J plastic_work_J loading_work_J
 unloading_work_J restitution impact_velocity_m_per_s contact_nodes contact_patches
-largest_patch_nodes residual convolutions pull_off_force_N separation_indentation_m
-restitution_error sticks adhesion_resolved median_patch_nodes resolved
+largest_patch_nodes residual convolutions pull_off_force_N pull_off_error_N separation_indentation_m
+restitution_error sticks adhesion_resolved adhesive_spacing_m median_patch_nodes resolved
 discretisation_error surface_scatter material_error total_error model_error refine
 """.split()  # noqa: SIM905
 

@@ -25,7 +25,7 @@ from restitution.contact.separation import separation_of
 from restitution.errors import CaseError, DomainError
 from restitution.numerics.grid import Grid
 from restitution.numerics.quadrature import integrate_curve
-from restitution.surfaces import Surface
+from restitution.surfaces import Surface, generate_surface
 from restitution.theory import JKR, Hertz, LennardJones
 from tolerance import approx
 
@@ -306,3 +306,33 @@ def test_the_error_of_unloading_is_that_of_the_steps_and_of_the_grid():
     assert steps > 0
     assert lost > 0
     assert found.error == approx(steps + 0.05 * spacing**2 * lost, rel=1e-6)
+
+
+def unloaded(contact, depths, *, share):
+    """Pull-off and unloading work from each of `depths`, with or without known states."""
+    found, back, state = [], (), None
+    for depth in depths:
+        state = solve(contact, depth, start=state)
+        back = list(unloading_path(state, known=back if share else ()))
+        end = collide(state, back)
+        found.append((end.unloading_work, end.pull_off_force, end.convolutions, end.adhesive_loss))
+    return np.array(found).T
+
+
+@pytest.mark.parametrize("limit", [math.inf, 0.5e9])
+def test_an_elastic_contact_joins_the_unloading_from_a_shallower_depth(limit):
+    """After yield the surfaces differ, so every unloading is computed."""
+    body = Body(radius=5e-6, youngs_modulus=70e9, poissons_ratio=0.17)
+    surface = generate_surface(
+        Grid(96, 4e-9), kind="gaussian", rms=1e-9, correlation_length=60e-9, seed=1
+    )
+    contact = Contact(Pair(body, body), surface, limit, work_of_adhesion=0.05, adhesion="cohesive")
+    depths = [0.5e-9, 1.5e-9, 3e-9]
+    joined, alone = (unloaded(contact, depths, share=share) for share in (True, False))
+    assert joined[0] == approx(alone[0], rel=2e-3)
+    assert joined[1] == approx(alone[1], rel=0.02)
+    if math.isinf(limit):
+        assert joined[2][1:].sum() < 0.7 * alone[2][1:].sum()
+        assert np.ptp(joined[1]) < 0.02 * joined[1].max()
+    else:
+        assert joined[2] == approx(alone[2])

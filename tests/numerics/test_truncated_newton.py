@@ -141,3 +141,16 @@ def test_the_first_step_along_negative_curvature_has_the_given_length(K, length)
     start = 1e-3 * np.random.default_rng(1).normal(size=SHAPE)
     minimise_locally(K, watched, p=start, u=K(start), length=length, tolerance=1e-10)
     assert np.abs(asked[1] - asked[0]).max() == approx(length, rel=1e-4)
+
+
+def test_no_product_uses_the_threads_of_blas(K, monkeypatch):
+    """They wait in a loop, which costs seven times the CPU time beside busy processes."""
+    rest = np.linspace(-1, 1, SHAPE[0] * SHAPE[1]).reshape(SHAPE)
+
+    def springs(u):
+        return 0.5 * (u - rest) ** 2, u - rest, np.ones(SHAPE)
+
+    expected = minimise(K, springs).u
+    for name in ("vdot", "dot", "inner", "matmul", "tensordot"):
+        monkeypatch.setattr(np, name, lambda *_: pytest.fail("BLAS"))
+    assert minimise(K, springs).u == approx(expected)

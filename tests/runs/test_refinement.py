@@ -13,7 +13,7 @@ from restitution.results.writer import ResultsFolder
 from restitution.runs import refinement
 from restitution.runs.depths import later_touches
 from restitution.runs.ensemble import run_realisations
-from restitution.runs.refinement import settled
+from restitution.runs.refinement import least_refined, settled
 from restitution.runs.run import run_case
 from tolerance import approx
 
@@ -124,3 +124,58 @@ def test_a_load_is_probed_as_a_load(auto, tmp_path):
     loaded = auto[:a] + '[load]\nvalues = ["1 mN"]\n' + auto[b:]
     found = settled(parse_case(loaded), tmp_path, pytest.fail)
     assert found.grid.refine >= 1
+
+
+SMOOTH = """
+total_error = false
+[first]
+radius = "5 um"
+youngs_modulus = "3 GPa"
+poissons_ratio = 0.33
+density = "1050 kg/m^3"
+[interface]
+work_of_adhesion = "0.05 J/m^2"
+{adhesion}yield_pressure = "elastic"
+[grid]
+nodes = 48
+spacing = "60 nm"
+refine = "auto"
+[indentation]
+values = ["8 nm", "15 nm"]
+"""
+
+
+def test_the_pull_off_radius_is_resolved(tmp_path):
+    """a_c = 84 nm needs cells of 21 nm, a quarter of 60 nm; patches alone would take 60 nm."""
+    text = SMOOTH.format(adhesion='adhesion = "jkr"\n')
+    assert settled(parse_case(text), tmp_path, pytest.fail).grid.refine == 4
+
+
+def test_an_affordable_range_of_the_attraction_is_resolved(tmp_path, monkeypatch):
+    """E* z0^2/w and sqrt(R* z0) of these hard spheres need 8.2 nm."""
+    hard = (
+        SMOOTH.format(adhesion="").replace("3 GPa", "80 GPa").replace('"8 nm", "15 nm"', '"1 nm"')
+    )
+    hard = hard.replace("60 nm", "20 nm")
+    found = settled(parse_case(hard), tmp_path, pytest.fail)
+    assert (found.interface.adhesion, found.grid.refine) == ("cohesive", 4)
+    assert least_refined(parse_case(hard), tmp_path).grid.refine == 4
+    monkeypatch.setattr(refinement, "MOST_COHESIVE_NODES", 96**2)
+    said = []
+    found = settled(parse_case(hard), tmp_path, said.append)
+    assert found.interface.adhesion == "jkr"
+    assert 'too coarse for "cohesive"' in said[0]
+
+
+def test_what_adhesion_would_need_is_said(tmp_path, monkeypatch):
+    monkeypatch.setattr(refinement, "MOST_NODES", 96**2)
+    said = []
+    text = SMOOTH.format(adhesion='adhesion = "jkr"\n')
+    assert settled(parse_case(text), tmp_path, said.append).grid.refine == 2
+    assert "the next grid would have 192 x 192 nodes" in said[0]
+    assert "adhesion needs cells of 2" in said[0]
+    assert "(grid.refine = 4, 192 x 192 nodes, about " in said[0]
+    cohesive = SMOOTH.format(adhesion='adhesion = "cohesive"\n')
+    monkeypatch.setattr(refinement, "MOST_COHESIVE_NODES", 96**2)
+    settled(parse_case(cohesive), tmp_path, said.append)
+    assert "or less (6144 x 6144 nodes)" in said[1]

@@ -54,10 +54,6 @@ def read_text(path: Path) -> str:
         raise CaseError(f"{path}: cannot be read ({error.strerror}); give a case file") from None
 
 
-# For each other kind of input file: a key that only this kind has, the kind, and its verb.
-_OTHER_FILES = (("materials", "the file of a mixture", "mixture"),)
-
-
 @contextmanager
 def naming(path: Path) -> Iterator[None]:
     """Put the name of the case file in front of error messages."""
@@ -133,9 +129,6 @@ def _check_depth(content: dict[str, Any]) -> None:
 def parse_case(text: str) -> Case:
     """Check the text of a case file. Raises a `CaseError` that names the key."""
     content = parse_toml(text)
-    for key, kind, verb in _OTHER_FILES:
-        if key in content and "first" not in content:
-            raise CaseError(f"{key}: this is {kind}, not a case; use `restitution {verb}`")
     try:
         return Case.model_validate(content)
     except ValidationError as error:

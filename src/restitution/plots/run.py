@@ -178,7 +178,7 @@ def restitution_figure(results: xr.Dataset, abscissa: Abscissa) -> Figure:
             open_label=UNRESOLVED,
         )
     )
-    if f"smooth_{variable}" in results:
+    if {f"smooth_{variable}", "smooth_restitution"} <= set(results.variables):
         smooth = scale * results[f"smooth_{variable}"].values
         series.append(Line(smooth, results["smooth_restitution"].values, _SMOOTH, color=GREY))
     series += _references(_REFERENCES[abscissa](results), scale)

@@ -7,6 +7,7 @@ import math
 from restitution.collision import Collision
 from restitution.contact.checks.pull_off import pull_off_error
 from restitution.contact.checks.resolution import (
+    adhesive_spacing,
     median_patch,
     resolves_adhesion,
     resolves_contact,
@@ -50,6 +51,7 @@ def curve_row(
         min(collision.restitution_error, max(cor, 1 - cor)) if impact else math.nan,
         collision.sticks and impact,
         resolves_adhesion(state),
+        adhesive_spacing(state) if state.contact.adhesive else math.nan,
         median,
         resolves_contact(state),
         *(math.nan,) * 4,  # filled in by `runs.error_budget`

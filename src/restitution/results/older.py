@@ -9,7 +9,7 @@ import xarray as xr
 
 from restitution.results.schema import COLUMNS
 
-LATER = frozenset({"pull_off_error_N"})
+LATER = frozenset({"pull_off_error_N", "adhesive_spacing_m"})
 """Columns that older tables lack; they are read as empty."""
 REQUIRED = tuple(name for name in COLUMNS if name not in LATER)
 
@@ -19,7 +19,8 @@ def as_now(row: dict[str, float]) -> dict[str, float]:
     if "adhesion_resolved" not in row:
         return row
     resolved = min(row["resolved"], row["adhesion_resolved"])  # `resolved` left adhesion out
-    return dict.fromkeys(LATER, math.nan) | row | {"resolved": resolved}
+    missing = dict.fromkeys(LATER - row.keys(), math.nan)
+    return row | missing | {"resolved": resolved}
 
 
 def dataset_as_now(results: xr.Dataset) -> xr.Dataset:

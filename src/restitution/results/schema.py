@@ -85,6 +85,12 @@ COLUMNS = {
         "the grid resolves the adhesion of the asperities in contact",
         flag=True,
     ),
+    "adhesive_spacing_m": _magnitude(
+        "adhesive_spacing",
+        "largest cell that resolves the adhesion of the asperities in contact",
+        unit="m",
+        optional=True,
+    ),
     "median_patch_nodes": _magnitude(
         "median_patch_nodes",
         "size of the median patch: half of the contact nodes are in patches at least as large",

@@ -36,6 +36,7 @@ from restitution.runs.messages import message
 from restitution.runs.oblique import mean_oblique
 from restitution.runs.periodic import run_periodic
 from restitution.runs.refinement import settled
+from restitution.runs.result_warnings import too_coarse_for_adhesion
 from restitution.runs.run import run_case
 
 # Columns that combine only surfaces on which an impact has this maximum indentation.
@@ -49,6 +50,7 @@ _OF_IMPACTS = (
 # Columns of an ensemble's curve that are not means, and the functions that combine the values of
 # the surfaces. Flags are not listed: they are true if they are true for all surfaces.
 _WORST: dict[str, Callable[[list[float]], float]] = {
+    "adhesive_spacing_m": min,
     "residual": max,
     "model_error": max,
     "median_patch_nodes": min,
@@ -235,6 +237,8 @@ class _Ensemble:
         depths = [row["max_indentation_m"] for row in whole]
         patches = [row["median_patch_nodes"] for row in whole]
         yield from map(message, unresolved_patches(depths, patches))
+        grid = self.case.realisation(0).contact(self.folder).grid
+        yield from too_coarse_for_adhesion(self.case, grid, whole, self.log.seconds)
         yield from interrupted_errors(self.case, self.out.rows, self.log.status)
         fewest = min((row["realisations"] for row in self.out.rows), default=math.inf)
         if fewest < self.case.realisations:

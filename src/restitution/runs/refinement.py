@@ -174,9 +174,9 @@ class _Level:
         times = divisions(max(self.contact.grid.spacing), spacing)
         nx, ny = divided(self.contact.grid, times).nodes
         refine = times * self.case.grid.factor
+        key = f"grid.refine = {refine}, " if refine <= FACTORS[-1] else ""
         return (
-            f"cells of {quantity(spacing, 'm')} or less (grid.refine = {refine}, {nx} x {ny} "
-            f"nodes{self._cost(times)})"
+            f"cells of {quantity(spacing, 'm')} or less ({key}{nx} x {ny} nodes{self._cost(times)})"
         )
 
     def _cost(self, times: int) -> str:

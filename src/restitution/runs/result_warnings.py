@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 
 from restitution.case.case import Case
 from restitution.contact.checks.resolution import unresolved_adhesion
-from restitution.contact.contact import Contact
 from restitution.display import duration
+from restitution.numerics.grid import Grid
 from restitution.runs.messages import message
 
 Row = dict[str, float]
@@ -21,20 +22,22 @@ _BALANCE = 0.01  # relative difference of unloading work and stored energy
 
 
 def too_coarse_for_adhesion(
-    case: Case,
-    contact: Contact,
-    rows: Sequence[Row],
-    spacings: Sequence[float],
-    needed: Sequence[float],
-    seconds: float,
+    case: Case, grid: Grid, rows: Sequence[Row], seconds: float
 ) -> Iterator[str]:
-    """Yield a warning if cells are too large for adhesion, with the finer grid and its cost."""
-    # If the last row could not be written, the lists have one value more than `rows`.
-    spacings, needed = spacings[: len(rows)], needed[: len(rows)]
-    depths = [row["max_indentation_m"] for row in rows]
+    """Yield a warning if cells are too large for adhesion, with the finer grid and its cost.
+
+    `grid` is the grid of the deepest of the `rows`, and `seconds` is the time of the run so far.
+    """
     factor = case.grid.factor
-    for found in unresolved_adhesion(depths, spacings, needed, factor * max(contact.grid.spacing)):
-        nx, ny = (n * found["refine"] // factor for n in contact.grid.nodes)
+    unrefined = factor * max(grid.spacing)
+    adhesive = [row for row in rows if not math.isnan(row["adhesive_spacing_m"])]
+    for found in unresolved_adhesion(
+        [row["max_indentation_m"] for row in adhesive],
+        [unrefined / row["refine"] for row in adhesive],
+        [row["adhesive_spacing_m"] for row in adhesive],
+        unrefined,
+    ):
+        nx, ny = (n * found["refine"] // factor for n in grid.nodes)
         finer = max(1.0, found["spacing"] / found["needed"])
         cost = duration(seconds * finer**_GROWTH)
         yield f"{message(found)} ({nx} x {ny} nodes, about {cost})"

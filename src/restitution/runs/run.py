@@ -15,7 +15,6 @@ from restitution.case.derived import deepest_indentation, derived_quantities
 from restitution.case.omissions import omissions
 from restitution.collision import Collision, collide
 from restitution.contact.checks.resolution import (
-    adhesive_spacing,
     unresolved_patches,
 )
 from restitution.contact.cohesive import CohesiveState
@@ -83,8 +82,6 @@ class _Run(RunLog):
     deepest: State | None = None
     loading_work_errors: list[float] = field(default_factory=list)
     asked: list[float] = field(default_factory=list)
-    spacings: list[float] = field(default_factory=list)
-    adhesive_spacings: list[float] = field(default_factory=list)
     band_errors: list[float] = field(default_factory=list)
     depth_seconds: list[float] = field(default_factory=list)
     unloading_checks: list[dict[str, float]] = field(default_factory=list)
@@ -217,8 +214,6 @@ def _keep(
     run.last_unloading = back
     with hold_signals():  # an interruption leaves a complete row or no row
         run.asked.append(depth.asked)
-        run.spacings.append(max(state.contact.grid.spacing))
-        run.adhesive_spacings.append(adhesive_spacing(state))
         run.loading_work_errors.append(state.work_error / max(abs(state.loading_work), 1e-300))
         if case.maps == "all":
             run.maps.append(DepthMaps.of(state))
@@ -315,9 +310,7 @@ def _result_warnings(case: Case, contact: Contact, out: ResultsFolder, run: _Run
     depths = [row["max_indentation_m"] for row in out.rows]
     patches = [row["median_patch_nodes"] for row in out.rows]
     yield from map(message, unresolved_patches(depths, patches))
-    yield from too_coarse_for_adhesion(
-        case, contact, out.rows, run.spacings, run.adhesive_spacings, run.seconds
-    )
+    yield from too_coarse_for_adhesion(case, contact.grid, out.rows, run.seconds)
     yield from band_warning(contact.surface, run.band_errors)
     if run.errors:
         yield from interrupted_errors(case, out.rows, run.status)
