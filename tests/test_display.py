@@ -5,7 +5,7 @@ import math
 import pytest
 
 import restitution as rs
-from restitution.display import counted, quantity, some_of, without_numbers
+from restitution.display import counted, duration, quantity, some_of, with_error, without_numbers
 from restitution.results.reader import RunResults
 
 STEEL = rs.Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25, density=7850)
@@ -23,6 +23,7 @@ STATE = rs.solve(CONTACT, indentation=100e-9)
         (1e-6, "m", "1 µm"),
         (1e-9, "m", "1 nm"),
         (-0.41e-6, "m", "-410 nm"),
+        (0.3e-9, "m", "0.3 nm"),
         (210e9, "Pa", "210 GPa"),
         (2.055e-6, "kg", "2.055 mg"),
         (19.6e-12, "m²", "19.6 µm²"),
@@ -106,3 +107,26 @@ def test_some_of_many_names():
     assert some_of(["b", "a", "", "b"]) == "b, a"
     assert some_of("abcde", most=3) == "a, b, c and 2 more"
     assert some_of([]) == ""
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "text"),
+    [
+        (91.55e-3, 4.849e-3, "91.6 ± 4.8 mN"),
+        (588.8e-9, 14.29e-9, "589 ± 14 nN"),
+        (137.1e-9, 128e-9, "137 ± 128 nN"),
+        (1.234e-3, 1e-5, "1.234 ± 0.010 mN"),
+        (1.234e-3, math.nan, "1.234 mN ± unknown"),
+        (1.234e-3, 0.0, "1.234 mN"),
+    ],
+)
+def test_an_error_has_two_digits_and_the_prefix_of_its_value(value, error, text):
+    assert with_error(value, error, "N") == text
+
+
+@pytest.mark.parametrize(
+    ("seconds", "text"),
+    [(0.2, "1 s"), (42, "42 s"), (170, "3 min"), (5000, "83 min"), (9000, "2 h")],
+)
+def test_a_time_is_rounded_for_people(seconds, text):
+    assert duration(seconds) == text

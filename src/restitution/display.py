@@ -54,8 +54,7 @@ def with_error(value: float, error: float, unit: str) -> str:
     number, prefixed = quantity(value, unit).split()
     scale = value / float(number)
     digits = 1 - math.floor(math.log10(error / scale))
-    if digits < 0:
-        return f"{number} ± {error / scale:.0f} {prefixed}"
+    digits = max(digits, 0)
     return f"{value / scale:.{digits}f} ± {error / scale:.{digits}f} {prefixed}"
 
 
