@@ -95,7 +95,8 @@ def _restitution(results: xr.Dataset, abscissa: Abscissa) -> Drawing:
         restitution_figure(results, abscissa),
         f"Coefficient of restitution{_span(cor, '.3f')} against {words}{_span(x, '.3g')} {unit}",
         f"Open markers ({few} of {cor.size}): not resolved by the grid, because at least half of "
-        f"the contact is in patches of fewer than {NODES_PER_PATCH} nodes.",
+        f"the contact is in patches of fewer than {NODES_PER_PATCH} nodes, or the cells are too "
+        "large for adhesion.",
         Table(
             "Restitution",
             [abscissa.axis.title, "COR", "resolved", *errors],

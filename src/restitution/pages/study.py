@@ -49,8 +49,8 @@ def _warnings(cases: list[StoredCase], count: dict[str, int]) -> list[str]:
     if few:
         found.append(
             f"{few} of {len(resolved)} depths are not resolved: at least half of their contact "
-            f"is in patches of fewer than {NODES_PER_PATCH} nodes, so their numbers depend on the "
-            "grid"
+            f"is in patches of fewer than {NODES_PER_PATCH} nodes, or the cells are too large for "
+            "adhesion, so their numbers depend on the grid"
         )
     if count["failed"] or count["missing"]:
         found.append(
