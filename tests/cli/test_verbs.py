@@ -1,6 +1,5 @@
 import csv
 import json
-import math
 import re
 import sys
 from importlib.metadata import version
@@ -9,7 +8,6 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from restitution.cli.running import _elastic_error, _with_error
 from restitution.numerics.kernels import instruction_set
 from tolerance import approx
 
@@ -264,21 +262,6 @@ def test_check_prints_a_spacing_that_can_be_copied(cli, case_text, tmp_path):
     text = case_text.replace('["0.5 um", "0.6 um"]', '["0.078125 um", "0.15625 um"]')
     (tmp_path / "case.toml").write_text(text)
     assert "nodes of 0.078125 um x 0.15625 um" in cli("check", tmp_path / "case.toml")[1]
-
-
-def test_the_error_of_a_model_that_does_not_yield_is_explained():
-    def row(error, work, cor):
-        return {"model_error": error, "plastic_work_J": work, "restitution": cor}
-
-    assert "from 1.6 Y on" in _elastic_error([row(0.0, 0.0, 1.0), row(0.07, 0.0, 1.0)])
-    for other in (row(0.0, 0.0, 1.0), row(0.1, 1e-9, 0.9), row(0.1, 0.0, 0.9)):
-        assert _elastic_error([other]) == ""
-
-
-def test_unknown_errors_are_named():
-    assert _with_error(0.5, 0.01, wanted=True) == "0.5000 ± 0.0100"
-    assert _with_error(0.5, math.nan, wanted=True) == "0.5000 ± unknown"
-    assert _with_error(0.5, math.nan, wanted=False) == "0.5000"
 
 
 @pytest.mark.drawn
