@@ -272,6 +272,14 @@ def test_adhesive_models_have_the_pull_off_force(pulled_off, mass, name):
     assert half.pull_off_misfit > found.pull_off_misfit
 
 
+def test_a_model_without_adhesion_is_fitted_to_adhesive_pairs(pulled_off):
+    law = pulled_off(Luding(0.5e-3, 2e6, 8e6, 4e5, 0.02), 2e6, 1.0)
+    fit = fit_of(law, "walton-braun")
+    assert fit.pull_off_misfit is None
+    assert fit.fitted_to == "the coefficient of restitution"
+    assert 0 < fit.worst < 0.2
+
+
 def test_adhesive_parameters_without_effect_are_zero(made, mass):
     """Without pull-off forces a law that loses energy by yielding needs no adhesion."""
     e = WaltonBraun(2e6, 4e6, 0.0).restitution(V, mass)

@@ -260,7 +260,7 @@ def _fitted_springs(
     low: list[float],
     **words: str,
 ) -> FittedLaw:
-    """Fit a spring model to COR and, with adhesion, to the pull-off forces of the points.
+    """Fit a spring model to COR and, if it has adhesion, to the pull-off forces of the points.
 
     `springs` computes the parameters of the model, in the order of the arguments of `theory`, from
     an array of unknowns. The fit begins with the values `start` and keeps them at or above `low`.
@@ -277,7 +277,12 @@ def _fitted_springs(
         return np.asarray(fitted.pull_off_force(deepest) / pulls - 1)
 
     known, pulls = _pull_off(law)
-    adhesive = law.work_of_adhesion > 0 and known.size > 0
+    # Walton and Braun's springs know no adhesion.
+    adhesive = (
+        law.work_of_adhesion > 0
+        and known.size > 0
+        and hasattr(model(np.array(start)), "pull_off_force")
+    )
     x = fit_restitution(
         law,
         lambda V, x: model(x).restitution(V, law.mass),
