@@ -18,6 +18,7 @@ ROOMS = (
     "surfaces",
     "contact",
     "collision",
+    "curve",
     "case",
     "results",
     "laws",

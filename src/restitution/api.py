@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import warnings
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -26,26 +27,26 @@ Folder = str | os.PathLike[str]
 def run(
     case: Folder | Mapping[str, Any],
     *,
-    out: Folder,
+    out: Folder | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> RunResults | PeriodicResults:
     """Run a case, as `restitution run` does, and open its results.
 
     The returned results have the attributes `dataset` (an xarray Dataset with units), `summary`
-    (the content of `summary.json`) and, unless the case is periodic, `curve` (the rows of
-    `curve.csv`). If the run fails or is interrupted, the depths computed so far are kept in `out`.
-    No figures are drawn. Use `on_device` to run on a GPU.
+    (the content of `summary.json`) and, unless the case is periodic, `curve`. If the run fails or
+    is interrupted, the depths computed so far are kept in `out`. No figures are drawn. Use
+    `on_device` to run on a GPU.
 
     Args:
         case: Case file, or its tables: `{"first": {"material": "steel", "radius": "500 um"}, …}`.
             File names in these tables are relative to the current folder.
-        out: Folder for the results; new or empty.
+        out: Folder for the results; new or empty. Without it, the results are kept in memory only.
         progress: Function that is called with a short text, such as "3 of 8 depths", at every step
             of the computation.
 
     Returns:
-        The stored results (`PeriodicResults` for a periodic case). Each warning stored in them is
-        also issued as a `UserWarning`.
+        The results, as `open_results` reads them (`PeriodicResults` for a periodic case). Each
+        warning in them is also issued as a `UserWarning`.
 
     Raises:
         RestitutionError: The case is invalid, `out` is not empty, or the run failed.
@@ -53,16 +54,20 @@ def run(
     from restitution.case.case_file import naming
     from restitution.results.locking import locked
     from restitution.results.periodic import PeriodicResults
-    from restitution.results.reader import read_run
     from restitution.results.writer import ResultsFolder
     from restitution.runs.ensemble import run_realisations
     from restitution.runs.log import ignore
 
     read, text, name = _read(case)
-    target = Path(out)
-    with locked(target), naming(name):
-        run_realisations(read, text, name.parent, ResultsFolder(target), progress or ignore)
-    results = PeriodicResults(target) if read.periodic else read_run(target)
+    folder = None if out is None else Path(out)
+    with nullcontext() if folder is None else locked(folder), naming(name):
+        target = ResultsFolder(folder)
+        run_realisations(read, text, name.parent, target, progress or ignore)
+    results = (
+        PeriodicResults.of(folder, target.periodic, target.summary, target.dataset)
+        if read.periodic
+        else target.results
+    )
     for warning in results.summary["warnings"]:
         warnings.warn(warning, stacklevel=2)
     return results
@@ -149,7 +154,9 @@ def law_of(results: Folder | RunResults) -> Law:
     from restitution.laws.law_files import LAW_FILE, read_law
     from restitution.results.reader import RunResults
 
-    folder = results.folder if isinstance(results, RunResults) else Path(results)
+    if isinstance(results, RunResults):
+        return law_from(results.folder or results)
+    folder = Path(results)
     return read_law(folder) if (folder / LAW_FILE).is_file() else law_from(folder)
 
 

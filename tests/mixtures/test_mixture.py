@@ -10,7 +10,7 @@ import pytest
 
 from restitution.case.case_file import parse_case
 from restitution.laws.from_results import bare_law
-from restitution.laws.interpolation import RatioCurve
+from restitution.curve.interpolation import RatioCurve
 from restitution.laws.law_files import read_laws
 from restitution.mixtures.family import families
 from restitution.mixtures.mixture_file import parse_mixture

@@ -19,7 +19,7 @@ from restitution.calibration.least_squares import (
     searches,
 )
 from restitution.calibration.measured import ASSUMED, Measured
-from restitution.calibration.model import Array, CaseModel
+from restitution.calibration.model import Array, CaseModel, restitution
 from restitution.calibration.parameters import Parameter, free_parameters
 from restitution.calibration.uncertainty import MODEL_SHARES, Deviations, Uncertainty
 from restitution.case.case import Case
@@ -157,13 +157,13 @@ def _deviations(model: CaseModel, x: Array, velocity: Array) -> Deviations:
     """
     here = model.at(x)
     own = here.restitution(velocity)
-    each = np.array([curve.restitution(velocity) for curve in here.curves])
+    each = np.array([restitution(curve, velocity) for curve in here.curves])
     try:
         grid: Array | None = model.restitution(x, velocity, "coarser") - own
     except RestitutionError:
         grid = None
     return Deviations(
-        random=here.error(velocity, "solver_error"),
+        random=here.error(velocity, "restitution_error"),
         freedom=math.inf,
         surfaces=each - own,
         grid=grid,

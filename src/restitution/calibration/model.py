@@ -10,8 +10,9 @@ parameters change. The interpolated COR is then a smooth function of the paramet
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
@@ -25,13 +26,14 @@ from restitution.case.case_file import parse_case
 from restitution.case.derived import deepest_indentation
 from restitution.case.schema import UnloadingTable
 from restitution.collision import collide
-from restitution.contact.checks.resolution import resolves_contact
 from restitution.contact.contact import Contact
 from restitution.contact.loading import solve
-from restitution.contact.model_error import model_error
 from restitution.contact.prescribed_velocity import solve_at_velocity
 from restitution.contact.state import State
-from restitution.laws.interpolation import RatioCurve
+from restitution.curve.columns import array
+from restitution.curve.curve import Curve
+from restitution.curve.follow import Load, Unloading, follow
+from restitution.curve.point import Point
 from restitution.runs.companions import coarser_contact
 from restitution.runs.log import Say, ignore
 from restitution.runs.messages import naming_keys, require_possible
@@ -48,34 +50,6 @@ MOST_VELOCITIES = 12  # largest number of velocities in the fitted case file
 
 
 @dataclass(frozen=True)
-class Curve:
-    """COR of one surface at increasing impact velocities (m/s), shape (depths,).
-
-    `ratio` is W_u/W_l, the work of unloading divided by the work of loading. `solver_error` and
-    `model_error` are the errors of COR due to the solver, and due to the models of plasticity and
-    adhesion. `resolved` is 1 if the grid resolves the contact, else 0.
-    """
-
-    ratio: RatioCurve
-    solver_error: Array
-    model_error: Array
-    resolved: Array
-
-    def restitution(self, velocity: Array) -> Array:
-        """COR at `velocity` (m/s), by interpolation."""
-        inside = np.clip(velocity, self.ratio.velocities[0], self.ratio.velocities[-1])
-        ratios = np.array([self.ratio.at(V) for V in inside.tolist()])
-        return np.asarray(np.sqrt(np.clip(ratios, 0.0, 1.0)))
-
-    def interpolated(
-        self, name: Literal["solver_error", "model_error", "resolved"], velocity: Array
-    ) -> Array:
-        """Return the value of the field `name` at `velocity` (m/s), by interpolation."""
-        V = self.ratio.velocities
-        return np.asarray(np.interp(np.log(velocity), np.log(V), getattr(self, name)))
-
-
-@dataclass(frozen=True)
 class Mean:
     """Mean COR of several surfaces of a case, and the largest errors among their `curves`."""
 
@@ -83,11 +57,11 @@ class Mean:
 
     def restitution(self, velocity: Array) -> Array:
         """Mean COR at `velocity` (m/s)."""
-        return np.asarray(np.mean([each.restitution(velocity) for each in self.curves], axis=0))
+        return np.asarray(np.mean([restitution(curve, velocity) for curve in self.curves], axis=0))
 
-    def error(self, velocity: Array, name: Literal["solver_error", "model_error"]) -> Array:
+    def error(self, velocity: Array, name: Literal["restitution_error", "model_error"]) -> Array:
         """Solver error or model error of COR at `velocity` (m/s), the largest over the surfaces."""
-        errors = [each.interpolated(name, velocity) for each in self.curves]
+        errors = [_interpolated(curve, name, velocity) for curve in self.curves]
         return np.asarray(np.max(errors, axis=0))
 
     def resolved_at(self, velocity: Array) -> NDArray[np.bool_]:
@@ -96,56 +70,67 @@ class Mean:
         These are the contacts at the next lower and the next higher computed velocity. The result
         is true only if the grid resolves both contacts for every surface.
         """
-        resolved = [each.interpolated("resolved", velocity) for each in self.curves]
+        resolved = [_interpolated(curve, "resolved", velocity) for curve in self.curves]
         return np.asarray(np.min(resolved, axis=0) > 1 - 1e-9)
+
+
+def restitution(curve: Curve, velocity: Array) -> Array:
+    """COR at `velocity` (m/s); constant beyond the ends of `curve`."""
+    return curve.at(np.clip(velocity, *curve.velocities))
+
+
+def _interpolated(curve: Curve, name: str, velocity: Array) -> Array:
+    V = np.log(curve.impact_velocity)
+    return np.asarray(np.interp(np.log(velocity), V, array(curve.points, name)))
 
 
 def curve_of(
     contact: Contact, low: float, high: float, unloading: UnloadingTable, near: float = math.nan
-) -> tuple[Curve, float]:
+) -> Curve:
     """Compute the curve of `contact` from velocity `low` to at least `high` (m/s).
 
-    Returns the curve and its first depth (m). `near` (m), if given, is the first depth of an
-    earlier curve of the same surface with other parameters. Each depth is then `near` times a power
-    of `_RATIO`, so both curves use depths of one geometric sequence. `near` is ignored for adhesive
-    contacts and if `low` equals `high`. Raises the errors of `solve` and `solve_at_velocity`.
+    `near` (m), if given, is the first depth of an earlier curve of the same surface with other
+    parameters. Each depth is then `near` times a power of `_RATIO`, so both curves use depths of
+    one geometric sequence. `near` is ignored for adhesive contacts and if `low` equals `high`.
+    Raises the errors of `solve` and `solve_at_velocity`.
     """
-    with naming_keys("impact"):
-        if math.isnan(near) or contact.adhesive or low == high:
-            state = solve_at_velocity(contact, low)
-        else:
-            state = solve(contact, near)
-            while (collide(state).impact_velocity or 0.0) > low:
-                state = solve(contact, state.indentation / _RATIO)
-        rows = [_row(state, unloading)]
+    points: list[Point] = []
+
+    def loads() -> Iterator[Load]:
+        begin = partial(_first_state, contact, low, math.nan if low == high else near)
+        yield Load(contact, lambda _: begin(), low)
         # If `low` equals `high`, one depth is enough, although its velocity can be slightly below
         # `high`.
-        while rows[-1][0] < high and low < high:
-            state = solve(contact, _RATIO * state.indentation, start=state)
-            row = _row(state, unloading)
-            if row[0] > rows[-1][0]:
-                rows.append(row)
-    first = max(sum(row[0] <= low for row in rows) - 1, 0)
-    V, ratio, solver, model, resolved, depth = np.array(rows[first:]).T
-    curve = Curve(RatioCurve(V, ratio, adhesive=contact.adhesive), solver, model, resolved)
-    return curve, float(depth[0])
+        while _velocity(points[-1]) < high and low < high:
+            depth = _RATIO * deepest[-1]
+            yield Load(contact, partial(_deeper, contact, depth), depth)
+
+    how = Unloading(unloading.method, tolerance=unloading.restitution_error)
+    deepest: list[float] = []
+    with naming_keys("impact"):
+        for impact in follow(loads(), how):
+            deepest.append(impact.state.indentation)
+            if not points or _velocity(impact.point) > _velocity(points[-1]):
+                points.append(impact.point)
+    first = max(sum(_velocity(point) <= low for point in points) - 1, 0)
+    return Curve(tuple(points[first:]))
 
 
-def _row(state: State, unloading: UnloadingTable) -> tuple[float, ...]:
-    """Return the values of a `Curve` at one depth, and the depth.
+def _deeper(contact: Contact, depth: float, start: State | None) -> State:
+    return solve(contact, depth, start=start)
 
-    The values are the impact velocity (m/s), W_u/W_l, the solver error and the model error of COR,
-    a flag that is true if the grid resolves the contact, and the depth (m).
-    """
-    collision = collide(state, method=unloading.method, tolerance=unloading.restitution_error)
-    return (
-        collision.impact_velocity or 0.0,
-        collision.unloading_work / collision.loading_work,
-        collision.restitution_error,
-        model_error(state, collision.restitution),
-        resolves_contact(state),
-        state.indentation,
-    )
+
+def _first_state(contact: Contact, low: float, near: float) -> State:
+    if math.isnan(near) or contact.adhesive:
+        return solve_at_velocity(contact, low)
+    state = solve(contact, near)
+    while (collide(state).impact_velocity or 0.0) > low:
+        state = solve(contact, state.indentation / _RATIO)
+    return state
+
+
+def _velocity(point: Point) -> float:
+    return 0.0 if math.isnan(point.impact_velocity) else point.impact_velocity
 
 
 @dataclass
@@ -200,8 +185,8 @@ class CaseModel:
             if cost != "full":
                 contact = coarser_contact(contact)
             near = self._first_depths.get((number, cost), math.nan)
-            curve, first = curve_of(contact, self.low, self.high, case.unloading, near)
-            self._first_depths[number, cost] = first
+            curve = curve_of(contact, self.low, self.high, case.unloading, near)
+            self._first_depths[number, cost] = curve.points[0].indentation
             curves.append(curve)
         self.evaluations += len(curves)
         self.progress(f"{self.evaluations} curves")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +14,8 @@ from restitution.cli.parameters import Device, FigureFormat
 
 if TYPE_CHECKING:
     from restitution.case.case import Case
+    from restitution.curve.periodic import PeriodicPoint
+    from restitution.curve.point import Point
     from restitution.results.writer import ResultsFolder
 
 
@@ -85,7 +87,10 @@ def run_with_progress(
                 progress=lambda words: bar.update(task, advance=1, description=words),
                 warn=warn,
             )
-        print_numbers(_curve(folder.rows, wanted=read.total_error))
+        points = folder.curve.points
+        print_numbers(
+            _curve(points, wanted=read.total_error) if points else _periodic_curve(folder.periodic)
+        )
         many = f" of {runs(read)} curves" if runs(read) > 1 else ""
         residual = summary["diagnostics"]["largest_residual"]
         answers.print(
@@ -93,22 +98,22 @@ def run_with_progress(
             f"{summary['seconds']:.1f} s; largest residual {residual:.1e}",
             markup=False,
         )
-        if attraction := in_words(summary.get("sticking", {}), folder.rows):
+        if attraction := in_words(summary.get("sticking", {}), points):
             say(attraction)
-        if why := _elastic_error(folder.rows):
+        if why := _elastic_error(points):
             say(why)
-        if advice := _advice(read, folder.rows, summary):
+        if advice := _advice(read, points, summary):
             say(advice)
         drawn = {path.name for path in _draw(out, figures)}
     except KeyboardInterrupt:
         errors.print("Interrupted.", style="red")
-        _draw_partial_results(folder, depths, figures)
+        _draw_partial_results(folder, out, depths, figures)
         # Exit status of Ctrl-C. After another signal, `main` exits with the status of that signal.
         raise typer.Exit(130) from None
     except BaseException:
         if received:
             errors.print("Interrupted.", style="red")
-        _draw_partial_results(folder, depths, figures)
+        _draw_partial_results(folder, out, depths, figures)
         raise
     names = [p.name for p in sorted(out.iterdir()) if p.name not in drawn and p.name != LOCK]
     say_written(out, [*names, *sorted(drawn)])
@@ -116,10 +121,10 @@ def run_with_progress(
     return summary
 
 
-def _elastic_error(rows: list[dict[str, float]]) -> str:
+def _elastic_error(points: Sequence[Point]) -> str:
     """Say why the error of the model is not 0 at depths where nothing yields; "" without any."""
-    elastic = (row for row in rows if row.get("plastic_work_J") == 0)
-    if not any(row.get("model_error", 0) > 0 and row["restitution"] == 1 for row in elastic):
+    elastic = (point for point in points if point.plastic_work == 0)
+    if not any(point.model_error > 0 and point.restitution == 1 for point in elastic):
         return ""
     return (
         "± model is above 0 although nothing yields: a real contact loses energy from 1.6 Y on, up "
@@ -127,20 +132,20 @@ def _elastic_error(rows: list[dict[str, float]]) -> str:
     )
 
 
-def _advice(case: Case, rows: list[dict[str, float]], summary: dict[str, Any]) -> str:
+def _advice(case: Case, points: Sequence[Point], summary: dict[str, Any]) -> str:
     """Name the largest part of a large total error and its remedy; empty if the error is small.
 
     Also empty if a warning recommends cleaning the scan, because no finer grid helps before.
     """
     from restitution.runs.messages import CLEANING
 
-    if case.periodic or not any(row["total_error"] >= _LARGE for row in rows):
+    if case.periodic or not any(point.total_error >= _LARGE for point in points):
         return ""
     if any(f"{CLEANING} = " in warning for warning in summary["warnings"]):
         return ""
-    from restitution.results.total_error import largest_part
+    from restitution.curve.curve import largest_part
 
-    part = largest_part(rows)
+    part = largest_part(points)
     material = summary["diagnostics"].get("material_advice", "")
     if part == "surface_scatter":
         n = case.realisations
@@ -157,21 +162,26 @@ def _advice(case: Case, rows: list[dict[str, float]], summary: dict[str, Any]) -
     return f"The largest part of the total error is {part}: {remedy}."
 
 
-def _draw_partial_results(folder: ResultsFolder, depths: int, figures: FigureFormat) -> None:
+def _draw_partial_results(
+    folder: ResultsFolder, out: Path, depths: int, figures: FigureFormat
+) -> None:
     """Print how many depths a run computed before it ended early, and draw its figures."""
     from contextlib import suppress
 
     from restitution.cli.console import errors, say
+    from restitution.curve.point import MeanPoint
 
-    if not folder.rows:
+    points = folder.curve.points or folder.periodic
+    if not points:
         return
-    of = " (means over the completed surfaces)" if "realisations" in folder.rows[0] else ""
+    means = isinstance(points[0], MeanPoint)
+    of = " (means over the completed surfaces)" if means else ""
     say(
-        f"{len(folder.rows)} of {depths} depths were computed{of} and are kept in {folder.path}",
+        f"{len(points)} of {depths} depths were computed{of} and are kept in {folder.path}",
         errors,
     )
     with suppress(Exception):  # a failing figure must not hide the error that ended the run
-        _draw(folder.path, figures)
+        _draw(out, figures)
 
 
 def _draw(out: Path, figures: FigureFormat) -> list[Path]:
@@ -194,53 +204,49 @@ def _with_error(cor: float, error: float, wanted: bool) -> str:
     return f"{cor:.4f} ± {known}" if wanted or not math.isnan(error) else f"{cor:.4f}"
 
 
-def _curve(rows: list[dict[str, float]], *, wanted: bool) -> Table:
+def _curve(points: Sequence[Point], *, wanted: bool) -> Table:
     from restitution.cli.console import table_of_numbers
 
-    if "nominal_pressure_Pa" in rows[0]:
-        return _periodic_curve(rows)
-    adhesive = any(row["pull_off_force_N"] > 0 for row in rows)
+    adhesive = any(point.pull_off_force > 0 for point in points)
     pull_off = ["pull-off"] if adhesive else []
     table = table_of_numbers(
         "depth (nm)", "force (N)", "V (m/s)", "COR", "± model", *pull_off, "nodes", "resolved"
     )
-    for row in rows:
-        velocity, cor, error = (
-            row[name] for name in ("impact_velocity_m_per_s", "restitution", "total_error")
-        )
+    for point in points:
+        velocity, cor, error = point.impact_velocity, point.restitution, point.total_error
         table.add_row(
-            f"{1e9 * row['max_indentation_m']:.4g}",
-            f"{row['force_N']:.4g}",
+            f"{1e9 * point.indentation:.4g}",
+            f"{point.force:.4g}",
             "–" if math.isnan(velocity) else f"{velocity:.4g}",
             "–" if math.isnan(cor) else _with_error(cor, error, wanted),
-            "–" if math.isnan(row["model_error"]) else f"{row['model_error']:.3f}",
-            *([_force(row)] if adhesive else []),
-            f"{row['contact_nodes']:.0f}",
-            "yes" if row["resolved"] else "no",
+            "–" if math.isnan(point.model_error) else f"{point.model_error:.3f}",
+            *([_force(point)] if adhesive else []),
+            f"{point.contact_nodes:.0f}",
+            "yes" if point.resolved else "no",
         )
     return table
 
 
-def _force(row: dict[str, float]) -> str:
+def _force(point: Point) -> str:
     from restitution.display import quantity
 
-    force, error = row["pull_off_force_N"], row["pull_off_error_N"]
+    force, error = point.pull_off_force, point.pull_off_error
     return f"{quantity(force, 'N')} ± {error / force:.0%}" if force > 0 else "unknown"
 
 
-def _periodic_curve(rows: list[dict[str, float]]) -> Table:
+def _periodic_curve(points: Sequence[PeriodicPoint]) -> Table:
     from restitution.cli.console import table_of_numbers
 
     table = table_of_numbers(
         "depth (nm)", "mean gap (nm)", "pressure (MPa)", "area (%)", "energy (J)", "resolved"
     )
-    for row in rows:
+    for point in points:
         table.add_row(
-            f"{1e9 * row['indentation_m']:.4g}",
-            f"{1e9 * row['mean_gap_m']:.4g}",
-            f"{1e-6 * row['nominal_pressure_Pa']:.4g}",
-            f"{100 * row['corrected_relative_area']:.4g}",
-            f"{row['stored_energy_J']:.4g}",
-            "yes" if row["resolved"] else "no",
+            f"{1e9 * point.indentation:.4g}",
+            f"{1e9 * point.mean_gap:.4g}",
+            f"{1e-6 * point.nominal_pressure:.4g}",
+            f"{100 * point.corrected_relative_area:.4g}",
+            f"{point.stored_energy:.4g}",
+            "yes" if point.resolved else "no",
         )
     return table

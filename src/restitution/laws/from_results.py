@@ -10,21 +10,20 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from restitution.case.bodies import BodyTable
+from restitution.curve.point import Point as Impact
 from restitution.errors import CaseError, OutputError, first_problem, one_line
 from restitution.laws.compact_fit import compact_fit
 from restitution.laws.force_law_fits import Begin, fitted_laws
 from restitution.laws.law import Conventions, Law, Point
 from restitution.laws.law_files import LAW_FILE
 from restitution.laws.particle import Particle
-from restitution.results.reader import EnsembleResults, RunResults, read_run
-from restitution.results.total_error import total
+from restitution.results.reader import RunResults, read_run
 
-_Row = Mapping[str, float]
 _SAME = 1e-9  # largest relative difference of values that count as equal
 
 
-def law_of(out: Path, begin: Begin | None = None) -> Law:
-    """Make the law of the results in the folder `out`, with its fits.
+def law_of(out: Path | RunResults, begin: Begin | None = None) -> Law:
+    """Make the law of the results `out`, or of those in this folder, with its fits.
 
     `begin` is called before each fit (`force_law_fits.Begin`). Raises the errors of `bare_law`.
     """
@@ -32,8 +31,8 @@ def law_of(out: Path, begin: Begin | None = None) -> Law:
     return replace(law, fit=compact_fit(law), laws=fitted_laws(law, begin))
 
 
-def bare_law(out: Path) -> Law:
-    """Make the law of the results in the folder `out`, without fits.
+def bare_law(out: Path | RunResults) -> Law:
+    """Make the law of the results `out`, or of those in this folder, without fits.
 
     The law of an ensemble contains the means over its surfaces, and its errors include the
     confidence interval of the mean. The errors from a convergence study include the error of the
@@ -41,7 +40,8 @@ def bare_law(out: Path) -> Law:
     left out. Raises `OutputError` if the folder holds no run, and `CaseError` if no depth has an
     impact velocity.
     """
-    run = _read(out)
+    run = out if isinstance(out, RunResults) else _read(out)
+    out = run.folder or Path("the results")
     try:
         return _law(out, run)
     except ValidationError as error:
@@ -57,7 +57,7 @@ def _inconsistent(out: Path, why: str) -> OutputError:
 
 
 def _law(out: Path, run: RunResults) -> Law:
-    rows, summary, case = run.curve.rows, run.summary, run.case
+    curve, summary, case = run.curve, run.summary, run.case
     derived, model = summary["derived"], summary["model"]
     if derived.get("reduced_mass_kg") is None:
         raise CaseError(
@@ -77,14 +77,15 @@ def _law(out: Path, run: RunResults) -> Law:
         warnings.append(
             'COR is an estimate (unloading.method = "energy-estimate"), and pull-off is not known'
         )
-    if left := len(rows) - len(points):
+    depths = len(curve.points)
+    if left := depths - len(points):
         warnings.append(
-            f"{left} of {len(rows)} depths are left out: no impact has its maximum indentation "
+            f"{left} of {depths} depths are left out: no impact has its maximum indentation "
             "there, because adhesion alone pulls the bodies deeper or the bodies do not touch"
         )
-    if unknown := sum(_is_unknown(row, asked=case.total_error) for row in rows):
+    if unknown := sum(_is_unknown(point, asked=case.total_error) for point in curve.points):
         warnings.append(
-            f"the total error is unknown at {unknown} of {len(rows)} depths; the error stated "
+            f"the total error is unknown at {unknown} of {depths} depths; the error stated "
             "there is the largest possible one, the larger of COR and 1 - COR"
         )
     pair = case.pair()
@@ -172,55 +173,47 @@ def _error_includes(diagnostics: Mapping[str, object], *, asked: bool) -> str:
 
 
 def _points(run: RunResults) -> list[Point]:
-    found: list[Point] = []
-    for row in run.curve.rows:
-        velocity, work = row["impact_velocity_m_per_s"], row["loading_work_J"]
-        if not velocity > 0 or not work > 0 or (found and velocity <= found[-1].velocity):
+    points: list[Point] = []
+    for impact in run.curve.impacts.points:
+        velocity = impact.impact_velocity
+        if not velocity > 0 or (points and velocity <= points[-1].velocity):
             continue
-        pull_off, error = row["pull_off_force_N"], row["pull_off_error_N"]
-        found.append(
+        points.append(
             Point(
                 velocity=velocity,
-                restitution=row["restitution"],
-                error=_error(row, asked=run.case.total_error),
-                ratio=_ratio(row, work, means=isinstance(run, EnsembleResults)),
-                loading_work=work,
-                indentation=row["max_indentation_m"],
-                force=row["force_N"],
-                pull_off_force=None if math.isnan(pull_off) else pull_off,
-                pull_off_error=None if math.isnan(error) else error,
-                resolved=bool(row["resolved"]),
+                restitution=impact.restitution,
+                error=_error(impact, asked=run.case.total_error),
+                ratio=impact.ratio,
+                loading_work=impact.loading_work,
+                indentation=impact.indentation,
+                force=impact.force,
+                pull_off_force=_known(impact.pull_off_force),
+                pull_off_error=_known(impact.pull_off_error),
+                resolved=impact.resolved,
             )
         )
-    return found
+    return points
 
 
-def _ratio(row: _Row, work: float, *, means: bool) -> float:
-    """Ratio of unloading to loading work.
-
-    If `means` is true, the row contains means over surfaces. The ratio is then the square of the
-    mean COR, so that both agree. If the mean COR is 0, the ratio of the mean works is returned.
-    """
-    ratio, e = row["unloading_work_J"] / work, row["restitution"]
-    return e * e if means and e > 0 else ratio
+def _known(value: float) -> float | None:
+    return None if math.isnan(value) else value
 
 
-def _error(row: _Row, *, asked: bool) -> float:
-    """Return the total error of a row.
+def _error(point: Impact, *, asked: bool) -> float:
+    """Return the total error of a point.
 
-    If the case `asked` for the total error but the row has none, a part of the error is unknown.
+    If the case `asked` for the total error but the point has none, a part of the error is unknown.
     The result is then the largest possible error of COR. If the case did not ask for the total
     error, the result is the root sum of squares of the known parts.
     """
-    if _is_unknown(row, asked=asked):
-        return max(row["restitution"], 1 - row["restitution"])
-    known = row.get("total_error", math.nan)
-    return total(row) if math.isnan(known) else known
+    if _is_unknown(point, asked=asked):
+        return max(point.restitution, 1 - point.restitution)
+    return point.combined_error if math.isnan(point.total_error) else point.total_error
 
 
-def _is_unknown(row: _Row, *, asked: bool) -> bool:
-    """Whether the case `asked` for a total error that the row lacks."""
-    return asked and math.isnan(row.get("total_error", math.nan))
+def _is_unknown(point: Impact, *, asked: bool) -> bool:
+    """Whether the case `asked` for a total error that the point lacks."""
+    return asked and math.isnan(point.total_error)
 
 
 def _particle(name: str, body: BodyTable) -> Particle:

@@ -15,9 +15,9 @@ from pydantic import Field, TypeAdapter, model_validator
 from pydantic.dataclasses import dataclass as checked_dataclass
 
 from restitution.case.quantities import read_positive
+from restitution.curve.interpolation import RatioCurve
 from restitution.display import counted, quantity, summary_html, summary_text, with_error
 from restitution.errors import CaseError, DomainError
-from restitution.laws.interpolation import RatioCurve
 from restitution.laws.particle import STRICT, NotNegative, Particle, Positive, Share
 
 Array = NDArray[np.float64]

@@ -32,6 +32,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from restitution.contact.bodies import Pair
+from restitution.curve.columns import Array
 from restitution.display import quantity, summary_html, summary_text
 from restitution.errors import CaseError
 from restitution.laws.foundation import Foundation
@@ -43,7 +44,7 @@ from restitution.laws.time_integration import (
     stored_force,
     table_rows,
 )
-from restitution.results.reader import Array, RunResults
+from restitution.results.reader import RunResults
 
 _STEPS = 4000  # number of time steps of a collision
 _LEAST = 1e-3  # fraction of the largest normal force below which `sticking` is set to 0
@@ -214,7 +215,7 @@ def oblique_force(run: RunResults, key: str = "angle") -> StoredForce:
     """
     if run.case.interface.adhesive_energy > 0:
         raise CaseError(f"{key}: oblique impacts are computed only for pairs without adhesion")
-    return stored_force(run.folder)
+    return stored_force(run)
 
 
 def course(collision: ObliqueCollision) -> list[dict[str, float]]:

@@ -31,6 +31,8 @@ import numpy as np
 import xarray as xr
 
 from restitution.contact.bodies import Pair
+from restitution.curve.columns import Array
+from restitution.curve.curve import UnloadingCurve
 from restitution.errors import (
     CaseError,
     DomainError,
@@ -38,7 +40,7 @@ from restitution.errors import (
     OutputError,
     RestitutionError,
 )
-from restitution.results.reader import Array, RunResults, UnloadingCurve
+from restitution.results.reader import RunResults
 from restitution.results.tables import damaged
 
 Force = Callable[[float], float]
@@ -150,13 +152,16 @@ class StoredForce:
         return lambda s: (1 - share) * lower(s) + share * upper(s), True
 
 
-def stored_force(out: Path) -> StoredForce:
-    """Read the force law of the run in the folder `out`. Raises `OutputError`, `CaseError`."""
-    if not (out / "results.nc").exists():
+def stored_force(out: Path | RunResults) -> StoredForce:
+    """Make the force law of a run, or of that in a folder. Raises `OutputError`, `CaseError`."""
+    if isinstance(out, RunResults):
+        run, out = out, out.folder or Path("the results")
+    elif not (out / "results.nc").exists():
         raise OutputError(
             f"{out}: holds no results of a run; give the folder that `restitution run` wrote"
         )
-    run = RunResults(out)
+    else:
+        run = RunResults(out)
     if not run.unloading:
         raise OutputError(
             f"{out}: holds no unloading curves; run the case with unloading.curves of 1 or more "

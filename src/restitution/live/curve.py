@@ -16,6 +16,8 @@ from restitution.case.case_file import parse_case
 from restitution.case.derived import deepest_indentation
 from restitution.case.omissions import default_yield, omissions
 from restitution.contact.contact import Contact
+from restitution.curve.follow import follow
+from restitution.curve.point import Point
 from restitution.errors import DomainError, RestitutionError
 from restitution.live.figures import (
     ContactMaps,
@@ -24,8 +26,7 @@ from restitution.live.figures import (
     live_dataset,
     surface_content,
 )
-from restitution.results.curve_row import curve_row
-from restitution.runs.depths import collision_at, loaded_depths
+from restitution.runs.depths import CaseUnloading, loads_of
 from restitution.runs.messages import input_warnings, require_possible
 from restitution.runs.refinement import settled, with_chosen_adhesion
 from restitution.runs.smooth import smooth_curve
@@ -99,36 +100,38 @@ class _Curve:
 
     def __init__(self, case: Case, contact: Contact, warnings: list[str]) -> None:
         self.case, self.contact, self.warnings = case, contact, warnings
-        self.rows: list[dict[str, float]] = []
+        self.points: list[Point] = []
         self.maps = ContactMaps(contact)
         self.failure: RestitutionError | None = None
 
     def compute(self, folder: Path, check: Callable[[], None]) -> Iterator[str]:
         began = drawn = time.perf_counter()
-        count = len(self.case.depths())
-        for number, depth in enumerate(loaded_depths(self.case, folder, self.contact), 1):
+        count, failed = len(self.case.depths()), 0
+
+        def fail(error: RestitutionError) -> bool:
+            nonlocal failed
             check()
-            if depth.state is None:
-                self.failure = self.failure or depth.error
-                if isinstance(depth.error, DomainError):
-                    break
-                continue
-            collision, _ = collision_at(self.case, depth.state)
-            row = curve_row(depth.state, collision, depth.refine, depth.touch)
-            self.rows.append(row)
-            self.maps.add(depth.state, row["max_indentation_m"])
+            self.failure, failed = self.failure or error, failed + 1
+            return not isinstance(error, DomainError)
+
+        loads = loads_of(self.case, folder, self.contact, unloaded=0)
+        for impact in follow(loads, CaseUnloading.of_case(self.case), fail):
+            check()
+            self.points.append(impact.point)
+            self.maps.add(impact.state, impact.point.indentation)
+            number = len(self.points) + failed
             if time.perf_counter() - drawn > _PARTIAL and number < count:
                 yield self.line(f"{number} of {count} depths")
                 drawn = time.perf_counter()
-        if self.failure is not None and not self.rows:
+        if self.failure is not None and not self.points:
             raise self.failure
         yield self.line("", seconds=time.perf_counter() - began)
 
     def line(self, progress: str, **more: Any) -> str:
-        results = live_dataset(self.case, self.contact, self.rows)
+        results = live_dataset(self.case, self.contact, self.points)
         return as_json(
             {
-                "curve": self.rows,
+                "curve": [point.cells() for point in self.points],
                 "figures": curve_figures(results),
                 "progress": progress,
                 "information": default_yield(self.case.yielding().source),
@@ -140,11 +143,11 @@ class _Curve:
 
     def with_smooth(self, check: Callable[[], None]) -> Iterator[str]:
         try:
-            smooth = smooth_curve(self.contact, self.rows, check)
+            smooth = smooth_curve(self.contact, self.points, check)
         except RestitutionError:  # the smooth curve is optional
             return
         if smooth:
-            results = live_dataset(self.case, self.contact, self.rows).assign(smooth)
+            results = live_dataset(self.case, self.contact, self.points).assign(smooth)
             yield as_json({"figures": curve_figures(results)})
 
     def with_surface(self, shown: str, check: Callable[[], None]) -> Iterator[str]:

@@ -14,6 +14,7 @@ from restitution.case.case import Case
 from restitution.case.derived import derived_quantities
 from restitution.contact.contact import Contact
 from restitution.contact.state import State
+from restitution.curve.point import Point
 from restitution.display import quantity
 from restitution.numerics.grid import Grid
 from restitution.plots import interactive
@@ -50,10 +51,10 @@ def _finite(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def live_dataset(case: Case, contact: Contact, rows: Sequence[Mapping[str, float]]) -> xr.Dataset:
-    """Make a dataset of `rows`, with everything that the figures of COR and of force need."""
+def live_dataset(case: Case, contact: Contact, points: Sequence[Point]) -> xr.Dataset:
+    """Make a dataset of `points`, with everything that the figures of COR and of force need."""
     derived = {f"derived_{k}": str(v) for k, v in derived_quantities(case, contact).items()}
-    return xr.Dataset(curve_variables(rows), attrs={"title": case.title, **derived})
+    return xr.Dataset(curve_variables(points), attrs={"title": case.title, **derived})
 
 
 def curve_figures(results: xr.Dataset) -> Raw:

@@ -18,8 +18,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.curve.interpolation import RatioCurve
 from restitution.laws.compact_fit import compact_fit
-from restitution.laws.interpolation import RatioCurve
 from restitution.laws.law import Law, Point
 from restitution.mixtures.family import Family, Meeting
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import xarray as xr
 
+from restitution.curve.oblique import ObliquePoint
 from restitution.pages.page import Cell, Drawing, Table
 from restitution.plots.oblique import oblique_figure
 
@@ -17,25 +19,25 @@ _NOTE = (
 )
 
 
-def oblique_drawing(results: xr.Dataset, rows: list[dict[str, float]]) -> Drawing:
-    """Draw the oblique impacts in `results`, with a table of their `rows`."""
-    known = [e_t for row in rows if not math.isnan(e_t := row["tangential_restitution"])]
+def oblique_drawing(results: xr.Dataset, points: Sequence[ObliquePoint]) -> Drawing:
+    """Draw the oblique impacts in `results`, with a table of `points`."""
+    known = [e_t for point in points if not math.isnan(e_t := point.tangential_restitution)]
     ends = f"from {min(known):.3f} to {max(known):.3f} " if known else ""
     cells: list[list[Cell]] = [
         [
-            row["impact_velocity_m_per_s"],
-            math.degrees(row["angle_rad"]),
-            row["normal_restitution"],
-            row["tangential_restitution"],
-            row.get("tangential_restitution_error", math.nan),
-            math.degrees(row["rebound_angle_rad"]),
-            row["first_spin_rad_per_s"],
-            row["second_spin_rad_per_s"],
-            row["friction_loss_J"],
-            row["normal_loss_J"],
-            "yes" if row["slides"] else "no",
+            point.velocity,
+            math.degrees(point.angle),
+            point.normal_restitution,
+            point.tangential_restitution,
+            point.tangential_restitution_error,
+            math.degrees(point.rebound_angle),
+            point.first_spin,
+            point.second_spin,
+            point.friction_loss,
+            point.normal_loss,
+            "yes" if point.slides else "no",
         ]
-        for row in rows
+        for point in points
     ]
     return Drawing(
         "Oblique impacts",

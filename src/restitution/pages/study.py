@@ -10,7 +10,7 @@ from restitution.contact.checks.resolution import NODES_PER_PATCH
 from restitution.pages.methods import methods
 from restitution.pages.page import Cell, Drawing, Listing, Page, Table, write_page
 from restitution.plots.cor import IMPACT_VELOCITY, INDENTATION, Abscissa
-from restitution.plots.study import MOST_LINES, rows_with, study_figure
+from restitution.plots.study import MOST_LINES, points_with, study_figure
 from restitution.results.reader import StoredCase, StudyResults
 
 
@@ -26,7 +26,7 @@ def write_study_page(out: Path) -> Path:
     parts: list[Table | Drawing | Listing] = [_cases(cases, swept), Listing("Study file", text)]
     if complete := [case for case in cases if case.status == "complete"]:
         abscissae = [INDENTATION]
-        if any(rows_with(case, IMPACT_VELOCITY) for case in cases):
+        if any(points_with(case, IMPACT_VELOCITY) for case in cases):
             abscissae.append(IMPACT_VELOCITY)
         drawings = (_restitution(complete, swept, each) for each in abscissae)
         parts = [*drawings, *parts, methods(study.run(complete[0].name).summary)]
@@ -44,7 +44,7 @@ def write_study_page(out: Path) -> Path:
 
 def _warnings(cases: list[StoredCase], count: dict[str, int]) -> list[str]:
     found = []
-    resolved = [row["resolved"] for case in cases for row in case.curve.rows]
+    resolved = [point.resolved for case in cases for point in case.curve.points]
     few = len(resolved) - int(sum(resolved))
     if few:
         found.append(
@@ -65,12 +65,12 @@ def _restitution(drawn: list[StoredCase], swept: list[str], abscissa: Abscissa) 
     table: list[list[Cell]] = [
         [
             *case.swept.values(),
-            abscissa.scale * row[abscissa.column],
-            row["restitution"],
-            "true" if row["resolved"] else "false",
+            abscissa.scale * getattr(point, abscissa.variable),
+            point.restitution,
+            "true" if point.resolved else "false",
         ]
         for case in drawn
-        for row in rows_with(case, abscissa)
+        for point in points_with(case, abscissa)
     ]
     figure = study_figure(drawn, abscissa)
     lines = min(len(drawn), MOST_LINES)
@@ -87,8 +87,8 @@ def _restitution(drawn: list[StoredCase], swept: list[str], abscissa: Abscissa) 
 def _cases(cases: list[StoredCase], swept: list[str]) -> Table:
     rows: list[list[Cell]] = []
     for case in cases:
-        cor = [e for row in case.curve.rows if not math.isnan(e := row["restitution"])]
-        resolved = int(sum(row["resolved"] for row in case.curve.rows))
+        cor = [e for point in case.curve.points if not math.isnan(e := point.restitution)]
+        resolved = int(sum(point.resolved for point in case.curve.points))
         rows.append(
             [
                 case.name,
@@ -96,7 +96,7 @@ def _cases(cases: list[StoredCase], swept: list[str]) -> Table:
                 case.status,
                 min(cor, default=None),
                 max(cor, default=None),
-                f"{resolved} of {len(case.curve.rows)}",
+                f"{resolved} of {len(case.curve.points)}",
                 case.reason,
             ]
         )

@@ -16,13 +16,12 @@ _MARGIN = 0.02  # smallest distance of the values from the ends of the axis
 class Abscissa(NamedTuple):
     """The x axis of a COR figure.
 
-    The plotted values are those of `variable` in a dataset, or of `column` in a table. `scale`
-    converts these values to the unit of `axis`.
+    The plotted values are those of `variable` in a dataset, which is also a field of `Point`.
+    `scale` converts these values to the unit of `axis`.
     """
 
     name: str
     variable: str
-    column: str
     scale: float
     axis: Axis
 
@@ -30,14 +29,12 @@ class Abscissa(NamedTuple):
 INDENTATION = Abscissa(
     "indentation",
     "indentation",
-    "max_indentation_m",
     1e6,
     Axis("maximum indentation", "µm", "log"),
 )
 IMPACT_VELOCITY = Abscissa(
     "velocity",
     "impact_velocity",
-    "impact_velocity_m_per_s",
     1.0,
     Axis("impact velocity", "m/s", "log"),
 )

@@ -12,11 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.case.case_file import parse_toml
+from restitution.curve.columns import array
+from restitution.curve.point import MeanPoint, Point
 from restitution.errors import OutputError
 from restitution.results.reader import RunResults, StudyResults
 from restitution.results.tables import require_restitution
 
-_Row = Mapping[str, float]
 _SAME = 1e-9  # largest relative difference of two depths that count as equal
 
 
@@ -82,17 +83,17 @@ def _studies(a: Path, b: Path) -> Comparison:
 
 
 def _curves(
-    a: Sequence[_Row], b: Sequence[_Row], swept: Mapping[str, str]
+    a: Sequence[Point], b: Sequence[Point], swept: Mapping[str, str]
 ) -> tuple[list[dict[str, Any]], list[str]]:
     """Compare two curves at the depths of `a`; return rows of the table, and notes.
 
     The curve `b` is interpolated. Depths of `a` outside the range of `b` are left out.
     """
-    depth_b = np.array([row["max_indentation_m"] for row in b])
-    weights = [_weights(depth_b, row["max_indentation_m"]) for row in a]
+    depth_b = array(b, "indentation")
+    weights = [_weights(depth_b, point.indentation) for point in a]
     rows = [
-        {**swept, **_difference(row, [b[k] for k in weight], list(weight.values()))}
-        for row, weight in zip(a, weights, strict=True)
+        {**swept, **_difference(point, [b[k] for k in weight], list(weight.values()))}
+        for point, weight in zip(a, weights, strict=True)
         if weight
     ]
     notes = []
@@ -100,7 +101,7 @@ def _curves(
         notes.append("depths differ: the second result is interpolated")
     if not all(weights):
         notes.append("depths of the first result outside the range of the second are left out")
-    if any(math.isnan(row["discretisation_error"]) for row in (*a, *b)):
+    if any(math.isnan(point.discretisation_error) for point in (*a, *b)):
         notes.append(
             "where discretisation_error is empty, the errors do not include the error due to the "
             "grid (set total_error = true, or use restitution converge)"
@@ -125,55 +126,54 @@ def _weights(depths: NDArray[np.float64], depth: float) -> dict[int, float]:
     return {k - 1: 1 - share, k: share}
 
 
-def _difference(row: _Row, other: Sequence[_Row], weights: Sequence[float]) -> dict[str, Any]:
-    """Compare a row with the weighted mean of the rows `other`."""
-    cor_a = row["restitution"]
+def _difference(point: Point, other: Sequence[Point], weights: Sequence[float]) -> dict[str, Any]:
+    """Compare a point with the weighted mean of the rows `other`."""
+    cor_a = point.restitution
     cor_b, force_b = (
-        float(np.dot(weights, [each[name] for each in other]))
-        for name in ("restitution", "force_N")
+        float(np.dot(weights, array(other, name))) for name in ("restitution", "force")
     )
-    error = math.hypot(_error(row), max(map(_error, other)))
+    error = math.hypot(_error(point), max(map(_error, other)))
     return {
-        "max_indentation_m": row["max_indentation_m"],
+        "max_indentation_m": point.indentation,
         "restitution_a": cor_a,
         "restitution_b": cor_b,
         "difference": cor_b - cor_a,
         "error": error,
         "significant": abs(cor_b - cor_a) > error,
-        "resolved": all(each["resolved"] for each in (row, *other)),
-        "force_ratio": force_b / row["force_N"] if row["force_N"] else math.nan,
+        "resolved": all(one.resolved for one in (point, *other)),
+        "force_ratio": force_b / point.force if point.force else math.nan,
     }
 
 
-def _error(row: _Row) -> float:
+def _error(point: Point) -> float:
     """Error of COR: root sum of squares of its numerical error, grid error and ensemble error."""
-    parts = [row["restitution_error"], row["discretisation_error"]]
-    if "restitution_low" in row:
-        parts.append(0.5 * (row["restitution_high"] - row["restitution_low"]))
+    parts = [point.restitution_error, point.discretisation_error]
+    if isinstance(point, MeanPoint):
+        parts.append(0.5 * (point.restitution_high - point.restitution_low))
     return math.hypot(*(part for part in parts if not math.isnan(part)))
 
 
 def _complete_cases(
     study: StudyResults,
-) -> dict[tuple[tuple[str, str], ...], list[dict[str, float]]]:
+) -> dict[tuple[tuple[str, str], ...], tuple[Point, ...]]:
     """Map the swept values of each complete case to the rows of its curve."""
     return {
-        tuple(case.swept.items()): case.curve.rows
+        tuple(case.swept.items()): case.curve.points
         for case in study.cases
         if case.status == "complete"
     }
 
 
-def _run(folder: Path) -> tuple[list[dict[str, float]], str]:
+def _run(folder: Path) -> tuple[tuple[Point, ...], str]:
     """Return the rows of the curve of a run, and the text of its case file.
 
     The text is empty if the run was killed and left only its curve.
     """
     run = RunResults(folder)
     if not (folder / "summary.json").exists() and not (folder / "results.nc").exists():
-        return run.curve.rows, ""
+        return run.curve.points, ""
     run.check()
-    return run.curve.rows, run.case_text
+    return run.curve.points, run.case_text
 
 
 def _inputs(a: str, b: str) -> list[tuple[str, str, str]]:

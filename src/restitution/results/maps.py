@@ -10,15 +10,15 @@ from typing import Any
 import numpy as np
 
 from restitution.contact.state import Array, State
+from restitution.curve.columns import Column, Record
 from restitution.numerics.box import Box, bounding_box, reframe
 from restitution.numerics.grid import Grid
-from restitution.results.schema import Column
 from restitution.results.writer import replace_file
 
 MAPS_FILE = "maps.nc"
 _MAPS = {
-    "pressure": Column("pressure", "Pa", "contact pressure"),
-    "plastic": Column("plastic_displacement", "m", "lowering of the surface by yielding"),
+    "pressure": Column("", "pressure", "Pa", "contact pressure"),
+    "plastic": Column("", "plastic_displacement", "m", "lowering of the surface by yielding"),
 }
 
 
@@ -59,23 +59,23 @@ class DepthMaps:
 
 
 def write_maps(
-    folder: Path,
+    folder: Path | None,
     maps: Sequence[DepthMaps],
-    rows: Sequence[Mapping[str, float]],
-    columns: Mapping[str, Column],
+    points: Sequence[Record],
     along: Mapping[str, str],
 ) -> None:
     """Write `maps.nc` into `folder`, completely or not at all. Raises `OutputError`.
 
-    The grid of the file is the finest of the depths. `maps` and `rows`, which have the `columns`,
-    have an item for each depth. The keys of `along` are names of columns, whose variables have the
-    names that are the values: first the coordinate of the depths, then others. Only one map at a
-    time is expanded to the whole grid.
+    The grid of the file is the finest of the depths. `maps` and `points` have an item for each
+    depth. The keys of `along` are headers of columns, whose variables have the names that are the
+    values: first the coordinate of the depths, then others. Only one map at a time is expanded to
+    the whole grid.
     """
     import netCDF4
 
-    if not maps:
+    if not maps or folder is None:
         return
+    columns, rows = points[0].columns(), [point.cells() for point in points]
     grid = min((one.grid for one in maps), key=lambda grid: grid.spacing)
     depth, *others = along.values()
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -14,11 +15,11 @@ LATER = frozenset({"pull_off_error_N", "adhesive_spacing_m"})
 REQUIRED = tuple(name for name in COLUMNS if name not in LATER)
 
 
-def as_now(row: dict[str, float]) -> dict[str, float]:
+def as_now(row: dict[str, Any]) -> dict[str, Any]:
     """Bring a row of an older table up to date."""
     if "adhesion_resolved" not in row:
         return row
-    resolved = min(row["resolved"], row["adhesion_resolved"])  # `resolved` left adhesion out
+    resolved = row["resolved"] and row["adhesion_resolved"]  # `resolved` left adhesion out
     missing = dict.fromkeys(LATER - row.keys(), math.nan)
     return row | missing | {"resolved": resolved}
 

@@ -6,18 +6,21 @@ import json
 import math
 from collections import Counter
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, NonNegativeInt, ValidationError
 
 from restitution.case.case import Case
 from restitution.case.case_file import parse_case
+from restitution.curve.columns import Column
+from restitution.curve.curve import Curve, UnloadingCurve
+from restitution.curve.oblique import MeanObliquePoint, ObliquePoint
+from restitution.curve.point import MeanPoint, Point
 from restitution.display import counted, quantity, summary_html, summary_text
 from restitution.errors import CaseError, OutputError, first_problem
 from restitution.results.checksums import check_file
@@ -25,14 +28,20 @@ from restitution.results.coordinates import with_coordinates
 from restitution.results.older import REQUIRED, as_now, dataset_as_now
 from restitution.results.schema import (
     ALL_COLUMNS,
+    ALL_OBLIQUE_COLUMNS,
     COLUMNS,
     OBLIQUE_COLUMNS,
     OBLIQUE_FILE,
-    OBLIQUE_SPREAD_COLUMNS,
     STATUS,
-    Column,
 )
-from restitution.results.stored_files import opened, read_json, read_maps, read_netcdf, read_text
+from restitution.results.stored_files import (
+    opened,
+    read_json,
+    read_maps,
+    read_netcdf,
+    read_text,
+    stored_file,
+)
 from restitution.results.tables import (
     check_number,
     damaged,
@@ -41,22 +50,7 @@ from restitution.results.tables import (
     require_restitution,
 )
 
-Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Curve:
-    """The rows of a curve as numbers (NaN for empty cells, 0 or 1 for flags) and as text."""
-
-    rows: list[dict[str, float]]
-    cells: list[dict[str, str]]
-
-    def _summary(self) -> list[str]:
-        columns = f": {', '.join(list(self.rows[0])[:3])}, …" if self.rows else ""
-        return [f"{counted(len(self.rows), 'row')}{columns}"]
-
-    __repr__ = summary_text
-    _repr_html_ = summary_html
+Oblique = tuple[ObliquePoint, ...]
 
 
 class _Stored(BaseModel):
@@ -92,41 +86,34 @@ class _Summary(_Stored):
 
 
 @dataclass(frozen=True)
-class UnloadingCurve:
-    """An unloading curve that begins at the depth `start` (m).
-
-    `indentation` (m) and `force` (N) are its points, sorted by increasing indentation.
-    """
-
-    start: float
-    indentation: Array
-    force: Array
-
-    def _summary(self) -> list[str]:
-        return [f"{counted(self.force.size, 'point')} from {quantity(self.start, 'm')}"]
-
-    __repr__ = summary_text
-    _repr_html_ = summary_html
-
-
-@dataclass(frozen=True)
 class RunResults:
-    """The results of one run or convergence study in `folder`.
+    """The results of one run or convergence study in `folder`, or in memory (`folder` is None).
 
     Each file is read on first use; a missing or damaged file raises `OutputError`.
     """
 
-    folder: Path
+    folder: Path | None
+
+    @classmethod
+    def in_memory(
+        cls, curve: Curve, summary: dict[str, Any], dataset: xr.Dataset, oblique: Oblique = ()
+    ) -> Self:
+        """Make results that are stored in no folder."""
+        results = cls(None)
+        # `cached_property` looks here first.
+        vars(results).update(curve=curve, summary=summary, dataset=dataset, oblique=oblique)
+        return results
 
     @cached_property
     def curve(self) -> Curve:
-        """The rows of `curve.csv`."""
-        return _read_table(self.folder / "curve.csv", REQUIRED, ALL_COLUMNS)
+        """The points of the curve, from `curve.csv`."""
+        rows = _read_rows(self._file("curve.csv"), REQUIRED, ALL_COLUMNS)
+        return Curve(tuple(map(_point, rows)))
 
     @cached_property
     def summary(self) -> dict[str, Any]:
         """The content of `summary.json`."""
-        path = self.folder / "summary.json"
+        path = self._file("summary.json")
         content = read_json(path)
         try:
             _Summary.model_validate_json(json.dumps(content))
@@ -150,13 +137,15 @@ class RunResults:
 
     def smooth(self) -> xr.Dataset:
         """The smooth bodies' variables of `results.nc`, and all attributes of the file."""
+        if self.folder is None:
+            return _smooth(self.dataset)
         with opened(self._netcdf) as stored:
-            return stored[[name for name in stored if str(name).startswith("smooth_")]].load()
+            return _smooth(stored).load()
 
     @cached_property
     def maps(self) -> xr.Dataset:
         """The maps of every depth (`maps.nc`), which a case with maps = "all" stores."""
-        return read_maps(self.folder)
+        return read_maps(self._file("maps.nc").parent)
 
     @cached_property
     def case_text(self) -> str:
@@ -190,19 +179,26 @@ class RunResults:
         return tuple(sorted(curves, key=lambda curve: curve.start))
 
     @cached_property
-    def oblique(self) -> list[dict[str, float]]:
-        """The rows of `oblique.csv`, one for each oblique impact; empty without this file."""
-        path = self.folder / OBLIQUE_FILE
+    def oblique(self) -> Oblique:
+        """The oblique impacts, from `oblique.csv`; empty without this file."""
+        path = self._file(OBLIQUE_FILE)
         if not path.exists():
-            return []
-        return _read_table(path, OBLIQUE_COLUMNS, OBLIQUE_COLUMNS | OBLIQUE_SPREAD_COLUMNS).rows
+            return ()
+        rows = _read_rows(path, OBLIQUE_COLUMNS, ALL_OBLIQUE_COLUMNS)
+        kind = MeanObliquePoint if "realisations" in rows[0] else ObliquePoint
+        return tuple(map(kind.of_cells, rows))
+
+    def _file(self, name: str) -> Path:
+        return stored_file(self.folder, name)
 
     @property
     def _netcdf(self) -> Path:
-        return self.folder / "results.nc"
+        return self._file("results.nc")
 
     @cached_property
     def _case_and_depths(self) -> tuple[str, int | None]:
+        if self.folder is None:
+            return self.dataset.attrs["case"], self.dataset.sizes["indentation_max"]
         with opened(self._netcdf) as stored:
             case, depths = stored.attrs.get("case"), stored.sizes.get("indentation_max")
         if not isinstance(case, str):
@@ -211,7 +207,7 @@ class RunResults:
 
     def check(self) -> None:
         """Raise `OutputError` unless curve, summary and dataset have the same number of depths."""
-        computed, rows = self.summary["depths_computed"], len(self.curve.rows)
+        computed, rows = self.summary["depths_computed"], len(self.curve.points)
         _, depths = self._case_and_depths
         if not rows == depths == computed:
             raise OutputError(
@@ -221,17 +217,16 @@ class RunResults:
 
     def _summary(self) -> list[str]:
         try:
-            rows, summary = self.curve.rows, self.summary
+            points, summary = self.curve.points, self.summary
         except OutputError as error:
             return [str(error)]
-        depths = [row["max_indentation_m"] for row in rows]
-        e = [e for row in rows if not math.isnan(e := row["restitution"])]
-        span = f" to {quantity(max(depths), 'm')}" if rows else ""
+        e = [point.restitution for point in points if not math.isnan(point.restitution)]
+        span = f" to {quantity(max(p.indentation for p in points), 'm')}" if points else ""
         span += f", COR {min(e):.4f} to {max(e):.4f}" if e else ""
         warned = counted(len(summary["warnings"]), "warning")
         return [
-            f'"{summary["title"]}", {summary["status"]}, {warned}; {self.folder}',
-            f"{len(rows)} of {counted(summary['depths_asked'], 'depth')}{span}",
+            f'"{summary["title"]}", {summary["status"]}, {warned}; {self.folder or "in memory"}',
+            f"{len(points)} of {counted(summary['depths_asked'], 'depth')}{span}",
         ]
 
     __repr__ = summary_text
@@ -280,27 +275,25 @@ class StudyResults:
     def cases(self) -> list[StoredCase]:
         """The cases in `table.csv`."""
         path = self.folder / "table.csv"
-        found: dict[str, StoredCase] = {}
+        cases: dict[str, StoredCase] = {}
         for line, cells in enumerate(read_cells(path, (*REQUIRED, "case", "status", "reason")), 2):
             swept = dict(list(cells.items())[: list(cells).index("max_indentation_m")])
-            status = cells["status"]
+            name, status = cells["case"], cells["status"]
             if status not in STATUS:
                 raise damaged(path, f"line {line}: status is {status!r}")
-            name = cells["case"]
-            case = found.setdefault(
-                name, StoredCase(name, status, cells["reason"], swept, Curve([], []))
-            )
+            case = cases.get(name) or StoredCase(name, status, cells["reason"], swept, Curve())
             if (case.status, case.swept) != (status, swept):
                 raise damaged(
                     path, f"line {line}: the rows of {name} differ in status or swept values"
                 )
             if status == "complete":
-                case.curve.rows.append(as_now(read_numbers(path, line, cells)))
-                case.curve.cells.append(cells)
+                point = _point(as_now(read_numbers(path, line, cells)))
+                case = replace(case, curve=Curve((*case.curve.points, point)))
+            cases[name] = case
         check_file(path)
-        if not found:
+        if not cases:
             raise damaged(path, "it has no rows")
-        return list(found.values())
+        return list(cases.values())
 
     @cached_property
     def text(self) -> str:
@@ -338,12 +331,19 @@ def read_run(folder: Path) -> RunResults:
     return EnsembleResults(folder) if "realisations" in run.summary else run
 
 
-def _read_table(path: Path, required: Iterable[str], columns: Mapping[str, Column]) -> Curve:
-    """Read and check a table, which must have the columns `required`.
+def _smooth(results: xr.Dataset) -> xr.Dataset:
+    return results[[name for name in results if str(name).startswith("smooth_")]]
 
-    The cells of `columns` are converted to numbers.
-    """
+
+def _point(row: Mapping[str, Any]) -> Point:
+    return (MeanPoint if "realisations" in row else Point).of_cells(row)
+
+
+def _read_rows(
+    path: Path, required: Iterable[str], columns: Mapping[str, Column]
+) -> list[dict[str, Any]]:
+    """Read and check a table, which must have the columns `required`."""
     cells = read_cells(path, required)
     rows = [as_now(read_numbers(path, line, row, columns)) for line, row in enumerate(cells, 2)]
     check_file(path)
-    return Curve(rows, cells)
+    return rows

@@ -17,6 +17,13 @@ from restitution.results.interruption import hold_signals
 from restitution.results.tables import damaged, reading
 
 
+def stored_file(folder: Path | None, name: str) -> Path:
+    """The file `name` in `folder`. Raises `OutputError` for results in memory (None)."""
+    if folder is None:
+        raise OutputError(f"{name}: is not stored; give `run` a folder (out=…) to keep it")
+    return folder / name
+
+
 def read_text(path: Path) -> str:
     """Read a text file of results. Raises `OutputError`."""
     with reading(path):

@@ -10,9 +10,11 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Any
 
+from restitution.curve.columns import Column
 from restitution.errors import OutputError, one_line
-from restitution.results.schema import ALL_COLUMNS, PERIODIC_FILE, Column
+from restitution.results.schema import ALL_COLUMNS, PERIODIC_FILE
 
 
 def is_periodic(folder: Path) -> bool:
@@ -77,7 +79,7 @@ def read_numbers(
     line: int,
     cells: Mapping[str, str],
     columns: Mapping[str, Column] = ALL_COLUMNS,
-) -> dict[str, float]:
+) -> dict[str, Any]:
     """Convert the cells of one row to numbers, for all `columns` that are present in the row.
 
     Raises `OutputError` if a cell holds a value that no run writes.
@@ -94,18 +96,18 @@ def read_numbers(
     return numbers
 
 
-def _number(path: Path, where: str, column: Column, text: str) -> float:
+def _number(path: Path, where: str, column: Column, text: str) -> float | bool:
     if column.flag:
         if text not in ("true", "false"):
             raise damaged(path, f"{where} is {text!r}, not true or false")
-        return float(text == "true")
+        return text == "true"
     value = math.nan
     with suppress(ValueError):
         value = float(text)
     if text and math.isnan(value):
         raise damaged(path, f"{where} is {text!r}, not a number")
     check_number(path, where, column, value)
-    return value
+    return int(text) if text.isascii() and text.isdigit() else value
 
 
 def check_number(path: Path, where: str, column: Column, value: float) -> None:

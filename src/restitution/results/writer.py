@@ -24,24 +24,19 @@ from typing import IO, Any
 import numpy as np
 import xarray as xr
 
-from restitution.collision import Collision
 from restitution.contact.state import State
 from restitution.contact.unloading_curve import complete_curve
+from restitution.curve.columns import Column, Record
+from restitution.curve.curve import Curve
+from restitution.curve.oblique import ObliquePoint
+from restitution.curve.periodic import PeriodicPoint
+from restitution.curve.point import Point
 from restitution.errors import OutputError, one_line
 from restitution.results.checksums import CHECKSUMS, checksums
 from restitution.results.coordinates import with_coordinates
-from restitution.results.curve_row import curve_row
 from restitution.results.interruption import hold_signals
-from restitution.results.schema import (
-    ALL_COLUMNS,
-    COLUMNS,
-    LOCK,
-    OBLIQUE_COLUMNS,
-    OBLIQUE_FILE,
-    OBLIQUE_SPREAD_COLUMNS,
-    UNLOADING_COLUMNS,
-    Column,
-)
+from restitution.results.reader import EnsembleResults, RunResults
+from restitution.results.schema import COLUMNS, LOCK, OBLIQUE_FILE, UNLOADING_COLUMNS
 
 _BLOCK = 1 << 16  # bytes written to find out whether the disk is full
 
@@ -54,19 +49,35 @@ def versions() -> dict[str, str]:
 
 
 class ResultsFolder:
-    """A folder that holds the results of one run."""
+    """The results of one run so far, in a folder or, if `path` is None, in memory only."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path | None) -> None:
         """Make the folder. Raises `OutputError` if it is not empty or cannot be written."""
         self.path = path
-        self.rows: list[dict[str, float]] = []
+        self.curve = Curve()
+        self.periodic: list[PeriodicPoint] = []
         self.unloading: list[tuple[float, list[tuple[float, float]]]] = []
-        self.oblique: list[dict[str, float]] = []
-        self._new = make_folder(path)
+        self.oblique: tuple[ObliquePoint, ...] = ()
+        self.dataset, self.summary = xr.Dataset(), dict[str, Any]()
+        self._new = path is not None and make_folder(path)
+        self._curve: IO[str] = io.StringIO()
+        self._unloading: IO[str] = io.StringIO()
+
+    @property
+    def rows(self) -> list[dict[str, Any]]:
+        """The rows of `curve.csv` or `periodic.csv`, with their headers as keys."""
+        return [point.cells() for point in self.periodic or self.curve.points]
+
+    def part(self, name: str) -> ResultsFolder:
+        """Make the results of one of several runs, in the folder `name`. Raises `OutputError`."""
+        return ResultsFolder(None if self.path is None else self.path / name)
 
     @contextmanager
     def tables(self) -> Iterator[None]:
         """Open `curve.csv` and `unloading.csv` for `add` and `add_unloading`."""
+        if self.path is None:
+            yield
+            return
         with (
             writing(self.path),
             open(self.path / "curve.csv", "w", newline="") as curve,
@@ -77,28 +88,33 @@ class ResultsFolder:
             _write_row(unloading, list(UNLOADING_COLUMNS))
             yield
 
-    def add(self, state: State, collision: Collision, refine: int = 1, touch: float = 0.0) -> None:
-        """Append the row of one state of loading (see `curve_row`) to `curve.csv`."""
-        row = curve_row(state, collision, refine, touch)
+    def add(self, point: Point) -> None:
+        """Append `point` to `curve.csv`."""
         with hold_signals():
-            _write_row(self._curve, [format_cell(value) for value in row.values()])
-            self.rows.append(row)
+            _write_row(self._curve, [format_cell(value) for value in point.cells().values()])
+            self.curve = Curve((*self.curve.points, point))
 
-    def put_curve(self, rows: list[dict[str, float]]) -> None:
-        """Replace the whole of `curve.csv` with `rows`."""
-        self.rows = rows
-        write_table(self.path / "curve.csv", rows)
+    def put_curve(self, points: Sequence[Point]) -> None:
+        """Replace the whole curve with `points`."""
+        self.curve = Curve(tuple(points))
+        self.put_table("curve.csv", points)
 
-    def put_oblique(self, rows: list[dict[str, float]]) -> None:
-        """Write the `rows` of oblique impacts to `oblique.csv`, unless there are none."""
-        self.oblique = [{**row, "slides": bool(row["slides"])} for row in rows]
-        if rows:
-            write_table(self.path / OBLIQUE_FILE, self.oblique)
+    def put_oblique(self, points: Sequence[ObliquePoint]) -> None:
+        """Write oblique impacts to `oblique.csv`, unless there are none."""
+        self.oblique = tuple(points)
+        if points:
+            self.put_table(OBLIQUE_FILE, points)
+
+    def put_table(self, name: str, points: Sequence[Record | Mapping[str, Any]]) -> None:
+        """Write a table, completely or not at all. Raises `OutputError`."""
+        if self.path is not None:
+            rows = [p.cells() if isinstance(p, Record) else p for p in points]
+            write_table(self.path / name, rows)
 
     def add_unloading(self, path: Sequence[State], touch: float = 0.0) -> None:
         """Append one unloading curve, from its deepest state to separation, to `unloading.csv`.
 
-        `touch` (m) is added to the indentations, as in `curve_row`.
+        `touch` (m) is added to the indentations, as in `Point.of`.
         """
         deepest = path[0].indentation + touch
         points = [(indentation + touch, force) for indentation, force in complete_curve(path)]
@@ -107,23 +123,36 @@ class ResultsFolder:
                 _write_row(self._unloading, [repr(v) for v in (deepest, *point)])
             self.unloading.append((deepest, points))
 
+    @property
+    def results(self) -> RunResults:
+        """What `write` has written."""
+        kind = EnsembleResults if "realisations" in self.summary else RunResults
+        if self.path is not None:
+            return kind(self.path)
+        return kind.in_memory(self.curve, self.summary, self.dataset, self.oblique)
+
     def discard(self) -> None:
         """Remove the empty tables, and the folder if it is new, so that another run can use it."""
+        if self.path is None:
+            return
         for name in ("curve.csv", "unloading.csv"):
             (self.path / name).unlink(missing_ok=True)
         if self._new:
             self.path.rmdir()
 
-    def write(self, dataset: xr.Dataset, summary: Mapping[str, Any]) -> None:
+    def write(self, dataset: xr.Dataset, summary: dict[str, Any]) -> None:
         """Write `results.nc`, `summary.json` and the checksums of all files.
 
         If `results.nc` cannot be written, `summary.json` records the failure. Raises `OutputError`.
         """
+        self.dataset, self.summary = with_coordinates(dataset), summary
+        if self.path is None:
+            return
         maps = {"height", "pressure", "plastic_displacement"} & set(dataset)
         packed = {str(name): {"zlib": True, "complevel": 1} for name in maps}
         with hold_signals():
             try:
-                write_netcdf(self.path / "results.nc", with_coordinates(dataset), packed)
+                write_netcdf(self.path / "results.nc", self.dataset, packed)
             except OutputError as error:
                 failed = {**summary, "status": "failed", "reason": one_line(str(error))}
                 with suppress(OutputError):
@@ -189,13 +218,13 @@ def write_json(path: Path, content: Mapping[str, Any]) -> None:
     replace_file(path, lambda to: to.write_text(text, encoding="utf-8"))
 
 
-def write_table(path: Path, rows: Sequence[Mapping[str, float | str]]) -> None:
+def write_table(path: Path, rows: Sequence[Mapping[str, Any]]) -> None:
     """Write `rows`, whose keys are the columns, as CSV, completely or not at all."""
     text = table_text(rows)
     replace_file(path, lambda to: to.write_text(text, encoding="utf-8", newline=""))
 
 
-def table_text(rows: Sequence[Mapping[str, float | str]]) -> str:
+def table_text(rows: Sequence[Mapping[str, Any]]) -> str:
     """Format `rows`, whose keys are the columns, as CSV; the text is empty without rows."""
     text = io.StringIO()
     if rows:
@@ -225,7 +254,7 @@ def replace_file(path: Path, write: Callable[[Path], object]) -> None:
 
 def results_dataset(folder: ResultsFolder, deepest: State) -> xr.Dataset:
     """Make the content of `results.nc`, with units: curve, unloading curves and maps."""
-    data = curve_variables(folder.rows) | oblique_variables(folder.oblique)
+    data = curve_variables(folder.curve.points) | oblique_variables(folder.oblique)
     if folder.unloading:
         depths, curves = zip(*folder.unloading, strict=True)
         # Pad shorter curves with NaN.
@@ -257,25 +286,30 @@ def dataset_with_maps(
     grid = deepest.contact.grid
     coordinates = {"x": ("x", grid.x, {"units": "m"}), "y": ("y", grid.y, {"units": "m"})}
     maps = (
-        (Column("height", "m", "composite roughness"), deepest.contact.surface.height),
-        (Column("pressure", "Pa", pressure), deepest.pressure),
-        (Column("plastic_displacement", "m", lowering), deepest.plastic_displacement),
+        (("height", "m", "composite roughness"), deepest.contact.surface.height),
+        (("pressure", "Pa", pressure), deepest.pressure),
+        (("plastic_displacement", "m", lowering), deepest.plastic_displacement),
     )
-    labelled = {column.variable: column.labelled(("x", "y"), values) for column, values in maps}
+    labelled = {
+        name: (("x", "y"), values, {"units": unit, "long_name": words})
+        for (name, unit, words), values in maps
+    }
     return xr.Dataset({**data, **labelled}, coordinates)
 
 
-def curve_variables(
-    rows: Sequence[Mapping[str, float]],
-    columns: Mapping[str, Column] = ALL_COLUMNS,
-    along: str = "indentation_max",
-) -> dict[str, Any]:
-    """Make the variables of `results.nc` for the rows of a curve, with the dimension `along`."""
+def curve_variables(points: Sequence[Record], along: str = "indentation_max") -> dict[str, Any]:
+    """Make the variables of `results.nc` for the points of a curve, with the dimension `along`."""
     return {
-        column.variable: column.labelled(along, np.array([row[name] for row in rows]))
-        for name, column in columns.items()
-        if rows and name in rows[0]
+        column.variable: column.labelled(along, values) for column, values in _by_column(points)
     }
+
+
+def _by_column(points: Sequence[Record]) -> Iterator[tuple[Column, np.ndarray[Any, Any]]]:
+    """Yield the columns of `points`, if there are any, with their values."""
+    if points:
+        rows = [point.cells() for point in points]
+        for header, column in points[0].columns().items():
+            yield column, np.array([row[header] for row in rows])
 
 
 def status_attributes(summary: Mapping[str, Any]) -> dict[str, str]:
@@ -299,29 +333,25 @@ def case_attributes(summary: Mapping[str, Any], text: str) -> dict[str, str]:
     return {"case": text, **entries}
 
 
-def oblique_variables(rows: Sequence[Mapping[str, float]]) -> dict[str, Any]:
-    """Make the variables of `results.nc` for the `rows` of oblique impacts, if there are any.
+def oblique_variables(points: Sequence[ObliquePoint]) -> dict[str, Any]:
+    """Make the variables of `results.nc` for oblique impacts, if there are any.
 
     The variables depend on the velocity and the angle of the impact. They are NaN for combinations
     of velocity and angle without an impact.
     """
-    if not rows:
+    if not points:
         return {}
-    cells = {
-        column: [row[name] for row in rows]
-        for name, column in (OBLIQUE_COLUMNS | OBLIQUE_SPREAD_COLUMNS).items()
-        if name in rows[0]
-    }
-    axes, others = list(cells)[:2], list(cells)[2:]
-    ticks, at = zip(*(np.unique(cells[axis], return_inverse=True) for axis in axes), strict=True)
+    (velocity, V), (angle, theta), *others = _by_column(points)
+    axes = velocity, angle
+    ticks, at = zip(*(np.unique(of, return_inverse=True) for of in (V, theta)), strict=True)
     along = tuple(axis.variable for axis in axes)
     data = {
         axis.variable: axis.labelled(axis.variable, values)
         for axis, values in zip(axes, ticks, strict=True)
     }
-    for column in others:
-        values = np.full([each.size for each in ticks], np.nan)
-        values[at] = cells[column]
+    for column, known in others:
+        values = np.full([tick.size for tick in ticks], np.nan)
+        values[at] = known
         data[column.variable] = column.labelled(along, values)
     return data
 

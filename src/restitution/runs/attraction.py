@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,11 +19,13 @@ import numpy as np
 from restitution.case.case import Case
 from restitution.collision import Collision, collide
 from restitution.contact.prescribed_velocity import solve_at_velocity
+from restitution.curve.columns import Array, array
+from restitution.curve.curve import Curve
+from restitution.curve.point import Point
+from restitution.curve.work_curve import WorkCurve
 from restitution.display import quantity, with_error
 from restitution.errors import RestitutionError
-from restitution.runs.companions import Array, Companions, Curve, half_interval
-
-Row = dict[str, float]
+from restitution.runs.companions import Companions, half_interval
 
 _NEAR = 0.02  # relative change of the sticking velocity at which its search ends
 _MOST_SOLVES = 6
@@ -44,28 +46,28 @@ class Sticking:
     error: float | None = None
 
 
-def sticking(case: Case, folder: Path, rows: Sequence[Row]) -> Sticking | None:
+def sticking(case: Case, folder: Path, curve: Curve) -> Sticking | None:
     """Find the velocity up to which the pair sticks, from the loss of energy L: ½ m* V² = L(V).
 
-    The search begins at the lowest velocity at which the pair rebounds in `rows`. Returns None
+    The search begins at the lowest velocity at which the pair rebounds on `curve`. Returns None
     without adhesion or impact velocities, or if the pair sticks at the highest velocity.
     """
     mass = case.pair().mass
     if mass is None or not case.interface.adhesive_energy or case.unloading.method != "path":
         return None
-    impacts = [row for row in rows if row["loading_work_J"] > 0]
-    if not impacts or impacts[-1]["sticks"]:
+    impacts = curve.impacts.points
+    if not impacts or impacts[-1].sticks:
         return None
     first = len(impacts)
-    while first and not impacts[first - 1]["sticks"]:
+    while first and not impacts[first - 1].sticks:
         first -= 1
-    row = impacts[first]
-    contact = case.refined(int(row["refine"])).realisation(0).contact(folder)
+    begins = impacts[first]
+    contact = case.refined(int(begins.refine)).realisation(0).contact(folder)
     begin = _Impact(
-        row["impact_velocity_m_per_s"],
-        row["loading_work_J"] - row["unloading_work_J"],
+        begins.impact_velocity,
+        begins.loading_work - begins.unloading_work,
         # The error of e is that of W_u/W_l divided by 2 e.
-        2 * row["restitution"] * row["restitution_error"] * row["loading_work_J"],
+        2 * begins.restitution * begins.restitution_error * begins.loading_work,
     )
 
     def impact(velocity: float) -> _Impact:
@@ -80,7 +82,7 @@ def with_errors(pair: Sticking, companions: Companions, *, scattered: bool) -> S
     assert mass is not None
     work = np.array([0.5 * mass * max(pair.velocity, pair.lowest) ** 2])
 
-    def velocity(curve: Curve) -> Array:
+    def velocity(curve: WorkCurve) -> Array:
         lost = np.maximum(work * (1 - curve.ratio(work)), 0.0)
         return np.sqrt(np.where(lost > _NEGLIGIBLE * work, 2 * lost / mass, 0.0))
 
@@ -89,23 +91,23 @@ def with_errors(pair: Sticking, companions: Companions, *, scattered: bool) -> S
     return Sticking(pair.velocity, pair.solver_error, pair.lowest, error)
 
 
-def add_pull_off_errors(
-    companions: Companions, rows: Sequence[Row], *, scattered: bool = True
-) -> None:
-    """Add the errors due to grid, surfaces and materials to `pull_off_error_N` of `rows`."""
+def with_pull_off_errors(
+    companions: Companions, points: Sequence[Point], *, scattered: bool = True
+) -> list[Point]:
+    """Add the errors due to grid, surfaces and materials to the `pull_off_error` of `points`."""
     if not companions.coarse.adhesive:
-        return
-    work = np.array([row["loading_work_J"] for row in rows])
-    force = np.array([row["pull_off_force_N"] for row in rows])
+        return list(points)
+    work, force = array(points, "loading_work"), array(points, "pull_off_force")
     parts = curve_errors(companions, lambda c: c.pull_off_at(work), force, scattered=scattered)
-    for k, row in enumerate(rows):
-        known = (float(part[k]) for part in parts)
-        row["pull_off_error_N"] = math.hypot(row["pull_off_error_N"], *known)
+    return [
+        replace(point, pull_off_error=math.hypot(point.pull_off_error, *errors))
+        for point, errors in zip(points, np.transpose(parts).tolist(), strict=True)
+    ]
 
 
 def curve_errors(
     companions: Companions,
-    quantity_of: Callable[[Curve], Array],
+    quantity_of: Callable[[WorkCurve], Array],
     here: Array,
     *,
     scattered: bool,
@@ -127,18 +129,16 @@ def curve_errors(
     return errors
 
 
-def in_words(known: Mapping[str, Any], rows: Sequence[Row]) -> str:
+def in_words(known: Mapping[str, Any], points: Sequence[Point]) -> str:
     """State pull-off force and sticking velocity in one line; empty without adhesion.
 
     `known` is the result of `summary_of`.
     """
-    adhesive = [
-        row for row in rows if row["loading_work_J"] > 0 and row.get("pull_off_force_N", 0.0) > 0
-    ]
+    adhesive = [point for point in points if point.loading_work > 0 and point.pull_off_force > 0]
     if not adhesive:
         return ""
-    forces = [_pull_off(row) for row in (adhesive[0], adhesive[-1])]
-    ratio = adhesive[0]["pull_off_force_N"] / adhesive[-1]["pull_off_force_N"]
+    forces = [_pull_off(point) for point in (adhesive[0], adhesive[-1])]
+    ratio = adhesive[0].pull_off_force / adhesive[-1].pull_off_force
     range_of = forces[0] if abs(ratio - 1) < _ALIKE else f"{forces[0]} to {forces[1]}"
     return f"{_sticks(known, adhesive)}; pull-off force {range_of}."
 
@@ -228,16 +228,16 @@ def _search(begin: _Impact, impact: Callable[[float], _Impact], mass: float) -> 
     return Sticking(velocity, math.hypot(last.uncertainty(mass), change), last.velocity)
 
 
-def _pull_off(row: Row) -> str:
-    force, error = row["pull_off_force_N"], row["pull_off_error_N"]
-    at = row["impact_velocity_m_per_s"]
+def _pull_off(point: Point) -> str:
+    force, error = point.pull_off_force, point.pull_off_error
+    at = point.impact_velocity
     where = "" if math.isnan(at) else f" after {quantity(at, 'm/s')}"
     return f"{with_error(force, error, 'N')}{where}"
 
 
-def _sticks(known: Mapping[str, Any], rows: Sequence[Row]) -> str:
-    if not known and rows[-1]["sticks"]:
-        last = quantity(rows[-1]["impact_velocity_m_per_s"], "m/s")
+def _sticks(known: Mapping[str, Any], points: Sequence[Point]) -> str:
+    if not known and points[-1].sticks:
+        last = quantity(points[-1].impact_velocity, "m/s")
         return f"Sticks at every computed velocity, up to {last}"
     if not known:
         return 'Sticking velocity unknown (it needs densities and unloading.method = "path")'

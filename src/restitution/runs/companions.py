@@ -12,34 +12,30 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.case.bodies import BodyTable, Yielding
 from restitution.case.case import Case
-from restitution.collision import UnloadingMethod, collide
+from restitution.collision import UnloadingMethod
 from restitution.contact.bodies import Pair
 from restitution.contact.cohesive import COMPANION
 from restitution.contact.contact import Contact, smooth
 from restitution.contact.loading import solve
-from restitution.contact.path import unloading_path
 from restitution.contact.state import State
+from restitution.curve.columns import Array
+from restitution.curve.follow import Load, Unloading, follow
+from restitution.curve.work_curve import WorkCurve
 from restitution.errors import CaseError, DomainError, RestitutionError
 from restitution.runs.log import Say, ignore
 from restitution.surfaces.refine import coarsen
-
-Array = NDArray[np.float64]
 
 ENDS = ("low", "high")  # of the spread of a library value
 CONFIDENCE = 0.95  # level of the confidence interval of a mean over surfaces
 SURFACES = 7  # number of additional surfaces from which the scatter is estimated
 _TOLERANCE = 0.005  # allowed error of COR due to the steps of adhesive unloading
-
-# Energy losses up to this fraction of the loading work count as rounding errors of elastic impacts.
-_LOSSLESS = 1e-6
 
 # A companion curve has two more depths than the run: the smallest depth times the first factor, and
 # the largest depth times the second factor. They are needed because other surfaces reach the same
@@ -47,63 +43,12 @@ _LOSSLESS = 1e-6
 _SHALLOWER, _DEEPER = 0.5, 1.3
 
 
-@dataclass(frozen=True)
-class Curve:
-    """Loading and unloading work (J) of impacts, at increasing values of the loading work.
-
-    `pull_off` is the pull-off force (N) after each impact; NaN if it is not known.
-    """
-
-    work: Array
-    unloading_work: Array
-    pull_off: Array
-
-    @property
-    def restitution(self) -> Array:
-        """COR of the impacts: sqrt(unloading work/loading work), 0 if the bodies stick."""
-        return np.sqrt(np.clip(self.unloading_work / self.work, 0.0, 1.0))
-
-    def ratio(self, work: Array) -> Array:
-        """Ratio of unloading to loading work at `work` (J), negative where the bodies stick.
-
-        The energy loss is interpolated linearly in ln(work), and constant beyond the ends.
-        """
-        if not self.work.size:
-            return np.full(np.shape(work), math.nan)
-        lost = self.work - self.unloading_work
-        return np.asarray(1 - np.interp(np.log(work), np.log(self.work), lost) / work)
-
-    def pull_off_at(self, work: Array) -> Array:
-        """Pull-off force (N) at `work` (J): linear in ln(work), constant beyond the ends."""
-        if not self.work.size:
-            return np.full(np.shape(work), math.nan)
-        return np.asarray(np.interp(np.log(work), np.log(self.work), self.pull_off))
-
-    def at(self, work: Array) -> Array:
-        """Interpolate COR at `work` (J): monotone cubic in ln(work), constant beyond the ends.
-
-        If every impact loses energy, the logarithm of the energy loss is interpolated instead of
-        COR. This keeps COR accurate between impacts that stick and impacts that separate, where COR
-        rises steeply from zero. All values are NaN if the curve is empty.
-        """
-        from scipy.interpolate import PchipInterpolator
-
-        if self.work.size < 2:
-            return np.full(np.shape(work), self.restitution[0] if self.work.size else math.nan)
-        at, inside = np.log(self.work), np.clip(work, self.work[0], self.work[-1])
-        lost = self.work - self.unloading_work
-        if np.all(lost > _LOSSLESS * self.work):
-            loss = np.exp(PchipInterpolator(at, np.log(lost))(np.log(inside)))
-            return np.asarray(np.sqrt(np.maximum(1 - loss / inside, 0.0)))
-        return np.asarray(PchipInterpolator(at, self.restitution)(np.log(inside)))
-
-
 def curve_of(
     contact: Contact,
     depths: Sequence[float],
     method: UnloadingMethod,
     tolerance: float = _TOLERANCE,
-) -> Curve:
+) -> WorkCurve:
     """Compute the curve of `contact` at `depths` (m) and at one more depth beyond each end.
 
     `tolerance` is the allowed error of COR due to the steps of adhesive unloading. A depth that
@@ -117,36 +62,27 @@ def _curve_of(
     depths: Sequence[float],
     method: UnloadingMethod,
     tolerance: float = _TOLERANCE,
-) -> Curve:
+) -> WorkCurve:
     """Compute a curve as `curve_of` does, with one of `contacts` for each depth."""
-    works: list[float] = []
-    returned: list[float] = []
-    tensions: list[float] = []
-    back: list[State] = []
-    state: State | None = None
-    before = contacts[0]
-    for contact, depth in zip(
-        (contacts[0], *contacts, contacts[-1]),
-        (_SHALLOWER * depths[0], *depths, _DEEPER * depths[-1]),
-        strict=True,
-    ):
-        if contact != before:
-            before, back, state = contact, [], None
-        try:
-            # Only the path of a cohesive contact is long enough to be worth continuing.
-            state = solve(contact, depth, start=state if contact.cohesive else None)
-            if contact.adhesive and method == "path":
-                back = list(unloading_path(state, tolerance=tolerance, known=back))
-            collision = collide(state, back or None, method=method, tolerance=tolerance)
-        except DomainError:
-            break
-        except RestitutionError:
-            continue
-        if collision.loading_work > (works[-1] if works else 0.0):
-            works.append(collision.loading_work)
-            returned.append(collision.unloading_work)
-            tensions.append(collision.pull_off_force)
-    return Curve(np.array(works), np.array(returned), np.array(tensions))
+    loads = [
+        Load(contact, partial(_solve, contact, depth), depth)
+        for contact, depth in zip(
+            (contacts[0], *contacts, contacts[-1]),
+            (_SHALLOWER * depths[0], *depths, _DEEPER * depths[-1]),
+            strict=True,
+        )
+    ]
+    impacts = follow(loads, Unloading(method, tolerance=tolerance), _failed)
+    return WorkCurve.of(impact.collision for impact in impacts)
+
+
+def _failed(error: RestitutionError) -> bool:
+    return not isinstance(error, DomainError)  # deeper contacts reach the edge of the grid, too
+
+
+def _solve(contact: Contact, depth: float, start: State | None) -> State:
+    # Only the path of a cohesive contact is long enough to be worth continuing.
+    return solve(contact, depth, start=start if contact.cohesive else None)
 
 
 def half_interval(surfaces: int) -> float:
@@ -178,11 +114,11 @@ class Companions:
         return self._coarse(self.case)
 
     @cached_property
-    def own(self) -> Curve:
+    def own(self) -> WorkCurve:
         """Curve with the surface and the materials of the run, on cells twice as large."""
         return self._curve(self.coarse)
 
-    def weaker(self, factors: Array) -> Curve:
+    def weaker(self, factors: Array) -> WorkCurve:
         """The curve of the contact `coarse` with its yield limit multiplied by `factors`.
 
         The yield limit is the yield pressure or the yield strength, whichever is given. `factors`
@@ -198,7 +134,7 @@ class Companions:
             return self.own
         return _curve_of(lowered, self.depths, self.case.unloading.method)
 
-    def others(self, progress: Say = ignore) -> list[Curve]:
+    def others(self, progress: Say = ignore) -> list[WorkCurve]:
         """Curves of other surfaces of the same kind (other seeds or places of the scan)."""
         for number in range(1 + len(self._others), SURFACES + 1):
             progress(f"error: surface {number} of {SURFACES}")
@@ -259,7 +195,7 @@ class Companions:
         """The contact `coarse` with the yield model of `case`."""
         return replace(self.coarse, **_yielding(case).arguments())
 
-    def curve(self, contact: Contact) -> Curve:
+    def curve(self, contact: Contact) -> WorkCurve:
         """The curve of `contact`, computed once; `contact` is `coarse` with other materials."""
         for known, curve in self._curves:
             if known == contact:
@@ -268,11 +204,11 @@ class Companions:
         return self._curves[-1][1]
 
     @cached_property
-    def _curves(self) -> list[tuple[Contact, Curve]]:
+    def _curves(self) -> list[tuple[Contact, WorkCurve]]:
         return [(self.coarse, self.own)]
 
     @cached_property
-    def _others(self) -> list[Curve]:
+    def _others(self) -> list[WorkCurve]:
         return []
 
     @cached_property
@@ -282,7 +218,7 @@ class Companions:
     def _coarse(self, case: Case) -> Contact:
         return coarser_contact(case.contact(self.folder))
 
-    def _curve(self, contact: Contact) -> Curve:
+    def _curve(self, contact: Contact) -> WorkCurve:
         return curve_of(contact, self.depths, self.case.unloading.method)
 
 

@@ -15,7 +15,8 @@ If there are only two grids, the error of f₂ is 3 |f₂ − f₁|.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -23,22 +24,20 @@ import numpy as np
 
 from restitution.case.case import Case
 from restitution.case.schema import MOST_NODES
+from restitution.curve.columns import array
+from restitution.curve.curve import largest
+from restitution.curve.point import Point
 from restitution.errors import CaseError
-from restitution.results.reader import RunResults
-from restitution.results.schema import COLUMNS
-from restitution.results.total_error import total
 from restitution.results.writer import (
     ResultsFolder,
     curve_variables,
     status_attributes,
-    write_table,
 )
 from restitution.runs.companions import Companions
 from restitution.runs.depths import later_touches
 from restitution.runs.error_budget import (
     MISSING_BAND,
     Band,
-    Row,
     interrupted_errors,
     spread_errors,
     total_error_summary,
@@ -49,9 +48,45 @@ from restitution.runs.log import RunLog, Say, ignore
 from restitution.runs.refinement import settled, with_chosen_adhesion
 from restitution.runs.run import run_case
 
-# The key is the refinement factor of a grid. The value contains the approach (m) to first touch
-# minus the approach on the finest grid, and the rows of the curve.
-_Runs = dict[int, tuple[float, list[Row]]]
+
+@dataclass(frozen=True)
+class _OnGrid:
+    """A point on one grid, with its number on the curve of this grid.
+
+    `last_change` is the absolute change of COR since the grid before.
+    """
+
+    point: Point
+    number: int
+    last_change: float
+    observed_order: float
+
+
+@dataclass(frozen=True)
+class _Spread:
+    """Errors due to surface and materials, and `unseen_yield` and `Band.octaves` of a point."""
+
+    errors: dict[str, Any]
+    unseen: float
+    octaves: float
+
+
+@dataclass(frozen=True)
+class _Grid:
+    """The curve of one grid.
+
+    `later` is the approach (m) at first touch minus that on the finest grid.
+    """
+
+    later: float
+    out: ResultsFolder
+
+    @property
+    def points(self) -> tuple[Point, ...]:
+        return self.out.curve.points
+
+
+_Grids = dict[int, _Grid]  # by refinement factor
 
 
 def run_convergence(
@@ -75,17 +110,20 @@ def run_convergence(
     is therefore smaller than the depth.
     """
     case.require_impact()
-    log, runs = RunLog(progress, warn), _Runs()
+    log, runs = RunLog(progress, warn), _Grids()
     unsettled: list[str] = []
+    spread: dict[int, _Spread] = {}
 
-    with log.record(out, lambda: _write_results(case, out, runs, log, unsettled) if runs else {}):
+    with log.record(
+        out, lambda: _write_results(case, out, runs, spread, log, unsettled) if runs else {}
+    ):
         case = settled(case, folder, log.warn)
         case = case.refined(max(case.factors()))
         if case.interface.adhesive_energy and case.interface.adhesion is None:
             case = with_chosen_adhesion(case, case.contact(folder), log.warn)
         unsettled[:] = log.warnings
         for factor, later in _levels(case, folder, grids).items():
-            part = ResultsFolder(out.path / f"refine-{factor}")
+            part = out.part(f"refine-{factor}")
             refined = _pressed_less(case, later)
             if not refined.depths():
                 warn(f"refine = {factor}: this grid has no contact at any depth and is left out")
@@ -102,40 +140,36 @@ def run_convergence(
                     errors=False,
                 )
             finally:
-                if part.rows:
-                    runs[factor] = later, part.rows
+                if part.curve.points:
+                    runs[factor] = _Grid(later, part)
         if case.total_error and runs:
-            _add_errors(case, folder, runs, log)
+            spread |= _spread(case.refined(max(runs)), folder, runs[max(runs)].points, log)
     return log.summary
 
 
-def _add_errors(
-    case: Case,
-    folder: Path,
-    runs: _Runs,
-    log: RunLog,
-) -> None:
-    """Add the errors due to surface and materials to the rows of the finest grid.
+def _spread(case: Case, folder: Path, points: Sequence[Point], log: RunLog) -> dict[int, _Spread]:
+    """Errors of the points of the finest grid due to surface and materials, by their number.
 
-    Each row also gets the values `errors_known`, `unseen_yield` and `octaves`. `errors_known` says
-    whether all of these errors could be computed. `_with_grid_errors` uses the other two values
-    (see `error_budget`) for the discretisation error. Rows whose loading work is not positive stay
-    unchanged.
+    Points whose loading work is not positive are left out.
     """
-    reached = [row for row in runs[max(runs)][1] if row["loading_work_J"] > 0]
+    reached = {k: point for k, point in enumerate(points) if point.loading_work > 0}
     if not reached:
-        return
-    fine = case.refined(max(runs))
-    waves = Band.of(fine.surface(folder))
-    companions = Companions(fine, folder, sorted(row["max_indentation_m"] for row in reached))
+        return {}
+    impacts = list(reached.values())
+    waves = Band.of(case.surface(folder))
+    companions = Companions(case, folder, sorted(point.indentation for point in impacts))
     log.progress("error: yielding on a finer grid")
-    unseen = unseen_yield(companions, waves, reached)
-    work = np.array([row["loading_work_J"] for row in reached])
+    unseen = unseen_yield(companions, waves, impacts)
+    work = array(impacts, "loading_work")
     errors = spread_errors(companions, work, log.progress, parts=log.material_parts)
-    for k, row in enumerate(reached):
-        found = {name: float(values[k]) for name, values in errors.items()}
-        known = all(math.isfinite(error) for error in found.values())
-        row.update(found, errors_known=known, unseen_yield=float(unseen[k]), octaves=waves.octaves)
+    return {
+        number: _Spread(
+            {name: float(values[k]) for name, values in errors.items()},
+            float(unseen[k]),
+            waves.octaves,
+        )
+        for k, number in enumerate(reached)
+    }
 
 
 def _levels(case: Case, folder: Path, grids: int) -> dict[int, float]:
@@ -180,27 +214,33 @@ def _pressed_less(case: Case, later: float) -> Case:
 def _write_results(
     case: Case,
     out: ResultsFolder,
-    runs: _Runs,
+    runs: _Grids,
+    spread: dict[int, _Spread],
     log: RunLog,
     unsettled: list[str],
 ) -> dict[str, Any]:
     """Write the finest curve, the table of all grids and the summary; return the summary."""
     depths = _by_depth(case, runs)
-    reached = [rows for rows in depths if max(runs) in rows]  # depths that the finest grid reached
-    finest = [rows[max(runs)] for rows in reached]
-    lacking = _with_grid_errors(finest) if case.total_error else 0
+    reached = [grids for grids in depths if max(runs) in grids]  # depths that the finest reached
+    lacking = 0
+    for grids in reached if case.total_error else ():
+        finest = grids[max(runs)]
+        point, unseen = _with_errors(finest, spread.get(finest.number))
+        grids[max(runs)], lacking = replace(finest, point=point), lacking + unseen
+    points = [grids[max(runs)].point for grids in reached]
     order = observed_order(depths)
-    out.put_curve([{key: row[key] for key in COLUMNS} for row in finest])
-    write_table(
-        out.path / "convergence.csv",
+    out.put_curve(points)
+    out.put_table(
+        "convergence.csv",
         [
-            {key: row[key] for key in ("refine", *COLUMNS, "observed_order")}
-            for rows in depths
-            for row in rows.values()
+            {"refine": 0} | on.point.cells() | {"observed_order": on.observed_order}
+            for grids in depths
+            for on in grids.values()
         ],
     )
-    one = RunResults(out.path / f"refine-{max(runs)}")
+    one = runs[max(runs)].out.results
     out.put_oblique(one.oblique)
+    convolutions = sum(int(p.convolutions) for grid in runs.values() for p in grid.points)
     summary = one.summary | {
         "status": log.status,
         "reason": log.reason,
@@ -209,34 +249,24 @@ def _write_results(
         "grids": sorted(runs),
         "observed_order": None if math.isnan(order) else order,
         "seconds": log.seconds,
-        "convolutions": sum(int(row["convolutions"]) for _, rows in runs.values() for row in rows),
+        "convolutions": convolutions,
     }
-    known = [e for row in finest if not math.isnan(e := row["discretisation_error"])]
     summary["diagnostics"] = {
         **one.summary["diagnostics"],
-        "largest_discretisation_error": max(known, default=None),
-        **total_error_summary(case, finest, log.material_parts),
+        "largest_discretisation_error": largest(points, "discretisation_error"),
+        **total_error_summary(case, points, log.material_parts),
     }
-    if lacking:
-        summary["warnings"].append(
-            f"{lacking} of {len(finest)} depths are not resolved: even the finest grid leaves out "
-            "waves of the scan that change COR; give more grids, or a smaller grid.spacing"
-        )
-    if len(known) < len(finest):
-        summary["warnings"].append(
-            f"{len(finest) - len(known)} of {len(finest)} depths have no discretisation_error: "
-            "coarser grids have no contact there; begin deeper, or with a finer grid (grid.refine)"
-        )
-    summary["warnings"] += interrupted_errors(case, finest, log.status)
-    dataset = one.dataset.assign(curve_variables(out.rows))
+    summary["warnings"] += _warnings(points, lacking)
+    summary["warnings"] += interrupted_errors(case, points, log.status)
+    dataset = one.dataset.assign(curve_variables(points))
     coarser = sorted(runs)[:-1]
     values = [
-        [rows[factor]["restitution"] if factor in rows else math.nan for rows in reached]
+        [grids[factor].point.restitution if factor in grids else math.nan for grids in reached]
         for factor in coarser
     ]
     dataset["coarser_restitution"] = (
         ("refine", "indentation_max"),
-        np.reshape(values, (len(coarser), len(finest))),
+        np.reshape(values, (len(coarser), len(points))),
         {"units": "1", "long_name": "coefficient of restitution on coarser grids"},
     )
     dataset["refine"] = coarser
@@ -245,60 +275,65 @@ def _write_results(
     return summary
 
 
-def _with_grid_errors(rows: list[Row]) -> int:
-    """Add three parts to the discretisation error of `rows`, the rows of the finest grid.
+def _warnings(points: Sequence[Point], lacking: int) -> Iterator[str]:
+    """Yield warnings about depths of which `lacking` are not resolved, or have no grid error."""
+    if lacking:
+        yield (
+            f"{lacking} of {len(points)} depths are not resolved: even the finest grid leaves out "
+            "waves of the scan that change COR; give more grids, or a smaller grid.spacing"
+        )
+    if unknown := sum(math.isnan(point.discretisation_error) for point in points):
+        yield (
+            f"{unknown} of {len(points)} depths have no discretisation_error: coarser grids have "
+            "no contact there; begin deeper, or with a finer grid (grid.refine)"
+        )
+
+
+def _with_errors(on: _OnGrid, spread: _Spread | None) -> tuple[Point, bool]:
+    """Add three parts to the discretisation error of a point on the finest grid.
 
     The first part is a minimum error, because differences of COR between grids may vanish by
     chance. The second part is the effect of the waves that the finest grid leaves out of a scan.
-    The third part is the effect of nodes that would yield only on a finer grid.
-
-    A row stays unchanged if it lacks a discretisation error or the values that `_add_errors` adds.
-    The total error of a row is set only if all of its parts are known. If the omitted waves change
-    COR by more than `MISSING_BAND`, the row is marked as not resolved. Returns the number of rows
-    that were marked.
+    The third part is the effect of nodes that would yield only on a finer grid. The total error is
+    set only if all of its parts are known. Returns the point, and whether the omitted waves change
+    COR by more than `MISSING_BAND`; the point is then marked as not resolved.
     """
-    lacking = 0
-    for row in rows:
-        if math.isnan(row["discretisation_error"]) or "unseen_yield" not in row:
-            continue
-        row["discretisation_error"], band = widened_error(
-            row["discretisation_error"],
-            row["last_change"],
-            row["unseen_yield"],
-            row,
-            row["octaves"],
-        )
-        if band > MISSING_BAND:
-            row["resolved"], lacking = False, lacking + 1
-        if row["errors_known"] and math.isfinite(row["discretisation_error"]):
-            row["total_error"] = total(row)
-    return lacking
+    if spread is None:
+        return on.point, False
+    point = replace(on.point, **spread.errors)
+    if math.isnan(point.discretisation_error):
+        return point, False
+    error, band = widened_error(
+        point.discretisation_error, on.last_change, spread.unseen, point, spread.octaves
+    )
+    point = replace(point, discretisation_error=error)
+    if band > MISSING_BAND:
+        point = replace(point, resolved=False)
+    if all(map(math.isfinite, (error, *spread.errors.values()))):
+        point = replace(point, total_error=point.combined_error)
+    return point, band > MISSING_BAND
 
 
-def _by_depth(case: Case, runs: _Runs) -> list[dict[int, Row]]:
-    """Return a dictionary for each depth: refinement factor of each grid, and row of this grid.
+def _by_depth(case: Case, runs: _Grids) -> list[dict[int, _OnGrid]]:
+    """Return the points at each depth by refinement factor, with their discretisation error.
 
-    Each row contains the discretisation error and the observed order. Grids that did not reach a
-    depth are missing from its dictionary.
+    Grids that did not reach a depth are missing from its dictionary.
     """
-    asked = case.depths()
-    found: list[dict[int, Row]] = [{} for _ in asked]
-    for factor, (later, rows) in sorted(runs.items()):
+    prescribed = case.depths()
+    depths: list[dict[int, _OnGrid]] = [{} for _ in prescribed]
+    for factor, grid in sorted(runs.items()):
         # A coarse grid lacks the shallowest depths, and an interrupted run lacks the deepest.
-        missed = sum(depth <= later for depth in asked) if case.indentation else 0
-        for number, row in enumerate(rows, missed):
-            values = [other["restitution"] for other in found[number].values()]
-            error, order = discretisation([*values, row["restitution"]])
-            indentation = asked[number] if case.indentation else row["max_indentation_m"]
-            found[number][factor] = {
-                **row,
-                "max_indentation_m": indentation,
-                "refine": factor,
-                "last_change": abs(values[-1] - row["restitution"]) if values else math.nan,
-                "discretisation_error": error,
-                "observed_order": order,
-            }
-    return found
+        missed = sum(depth <= grid.later for depth in prescribed) if case.indentation else 0
+        for number, point in enumerate(grid.points):
+            depth = depths[missed + number]
+            values = [other.point.restitution for other in depth.values()]
+            error, order = discretisation([*values, point.restitution])
+            change = abs(values[-1] - point.restitution) if values else math.nan
+            point = replace(point, refine=factor, discretisation_error=error)
+            if case.indentation:
+                point = replace(point, indentation=prescribed[missed + number])
+            depth[factor] = _OnGrid(point, number, change, order)
+    return depths
 
 
 def discretisation(values: Sequence[float]) -> tuple[float, float]:
@@ -318,7 +353,7 @@ def discretisation(values: Sequence[float]) -> tuple[float, float]:
     return max(1.5 * abs(last), 0.5 * abs(before)), order
 
 
-def observed_order(depths: Sequence[dict[int, Row]]) -> float:
+def observed_order(depths: Sequence[dict[int, _OnGrid]]) -> float:
     """Observed order of convergence of COR on the last three grids.
 
     The differences of COR between grids are averaged over the depths (rms), because the orders of
@@ -326,12 +361,12 @@ def observed_order(depths: Sequence[dict[int, Row]]) -> float:
     reach it. The result is NaN for fewer than three grids, without such depths, or if COR does not
     change between two grids.
     """
-    factors = sorted({factor for rows in depths for factor in rows})[-3:]
+    factors = sorted({factor for grids in depths for factor in grids})[-3:]
     steps = np.array(
         [
-            np.diff([rows[factor]["restitution"] for factor in factors])
-            for rows in depths
-            if all(factor in rows for factor in factors) and rows[factors[-1]]["resolved"]
+            np.diff([grids[factor].point.restitution for factor in factors])
+            for grids in depths
+            if all(factor in grids for factor in factors) and grids[factors[-1]].point.resolved
         ]
     )
     if len(factors) < 3 or not steps.size or not np.all(np.any(steps, axis=0)):

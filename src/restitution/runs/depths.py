@@ -1,41 +1,23 @@
-"""The depths of a case, one after the other: load to each depth, and unload where needed."""
+"""The loads of a case, and how its contacts are unloaded, for `curve.follow`."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from restitution.case.case import Case
 from restitution.case.derived import deepest_indentation
-from restitution.collision import Collision, collide
+from restitution.collision import Collision
 from restitution.contact.checks.edge import needed_edges
 from restitution.contact.contact import Contact
 from restitution.contact.loading import solve
-from restitution.contact.path import unloading_path
 from restitution.contact.prescribed_force import solve_at_force
 from restitution.contact.prescribed_pressure import solve_at_pressure
 from restitution.contact.prescribed_velocity import solve_at_velocity
 from restitution.contact.state import State
-from restitution.errors import DomainError, NotConvergedError
+from restitution.curve.follow import Load, Unloading
 from restitution.runs.messages import naming_keys
-
-
-@dataclass(frozen=True)
-class Depth:
-    """One depth of a case, after loading.
-
-    `asked` is the prescribed value (m, N or m/s), and `refine` the refinement factor of the grid on
-    which the depth is solved. `touch` (m) is the approach at which the bodies first touch on this
-    grid minus the approach at which they first touch on the finest grid. `state` is None if loading
-    failed with `error`.
-    """
-
-    asked: float
-    refine: int
-    touch: float
-    state: State | None = None
-    error: NotConvergedError | DomainError | None = None
 
 
 def later_touches(case: Case, folder: Path, factors: Iterable[int]) -> dict[int, float]:
@@ -69,47 +51,43 @@ def load_to(case: Case, contact: Contact, depth: float, start: State | None = No
         return solve(contact, depth, start=start)
 
 
-def loaded_depths(case: Case, folder: Path, contact: Contact) -> Iterator[Depth]:
-    """Load to every depth of `case`, from the shallowest to the deepest.
+def loads_of(
+    case: Case, folder: Path, contact: Contact, *, unloaded: int | None = None
+) -> Iterator[Load]:
+    """The loads to every depth of `case`, from the shallowest to the deepest.
 
     `contact` is the contact on the grid of the deepest depth. File names in the case are relative
-    to `folder`. Each load starts from the previous state on the same grid.
+    to `folder`. `unloaded` is the number of unloading curves, by default that of the case. They
+    begin at evenly spaced depths, including the deepest.
     """
-    factors = case.factors()
+    factors, depths = case.factors(), case.depths()
     # A coarse grid first touches at a larger approach than the finest grid. The extra approach is
     # added to all stored indentations, even if loads or velocities are prescribed.
     touches = later_touches(case, folder, set(factors)) if len(set(factors)) > 1 else {}
-    for factor in sorted(set(factors), reverse=True):
-        last = factor == factors[-1]
-        level = contact if last else case.refined(factor).contact(folder)
-        touch, state = touches.get(factor, 0.0), None
-        for asked in [d for d, its in zip(case.depths(), factors, strict=True) if its == factor]:
-            try:
-                state = load_to(case, level, asked - touch if case.indentation else asked, state)
-            except (NotConvergedError, DomainError) as error:
-                yield Depth(asked, factor, touch, error=error)
-            else:
-                yield Depth(asked, factor, touch, state)
+    curves = case.unloading.curves if unloaded is None else unloaded
+    back = {len(depths) - 1 - (k * len(depths)) // curves for k in range(curves)}
+    level, on = contact, factors[-1]
+    for number, (depth, factor) in enumerate(zip(depths, factors, strict=True)):
+        if factor != on:
+            on = factor
+            level = contact if factor == factors[-1] else case.refined(factor).contact(folder)
+        touch = touches.get(factor, 0.0)
+        to = partial(load_to, case, level, depth - touch if case.indentation else depth)
+        yield Load(level, to, depth, factor, touch, unload=number in back)
 
 
-def collision_at(
-    case: Case, state: State, *, unload: bool = False, known: Sequence[State] = ()
-) -> tuple[Collision, Sequence[State]]:
-    """Return the collision whose deepest state is `state`, and its unloading curve.
+class CaseUnloading(Unloading):
+    """Unloading as a case asks for it; errors name the keys of the case file."""
 
-    The curve is computed if `unload` is true or if the collision needs it; otherwise it is empty.
-    `known` is the unloading curve of a shallower depth, which `unloading_path` may reuse.
-    """
-    followed = state.contact.adhesive and case.unloading.method == "path"
-    back: list[State] = []
-    if followed or unload:
+    @classmethod
+    def of_case(cls, case: Case) -> CaseUnloading:
+        """Take the table `[unloading]` of `case`."""
+        table = case.unloading
+        return cls(table.method, table.steps, table.restitution_error)
+
+    def of(
+        self, state: State, known: Sequence[State], *, always: bool
+    ) -> tuple[Collision, Sequence[State]]:
+        """As `Unloading.of`."""
         with naming_keys():
-            back = list(
-                unloading_path(
-                    state,
-                    steps=case.unloading.steps,
-                    tolerance=case.unloading.restitution_error,
-                    known=known,
-                )
-            )
-    return collide(state, back if followed else None, method=case.unloading.method), back
+            return super().of(state, known, always=always)

@@ -4,53 +4,43 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from restitution.case.case import Case
-from restitution.contact.checks.resolution import unresolved_patches
+from restitution.curve.curve import largest
+from restitution.curve.point import MeanPoint, Point
 from restitution.errors import RestitutionError
-from restitution.results.reader import RunResults
-from restitution.results.schema import COLUMNS
-from restitution.results.total_error import largest, total
 from restitution.results.writer import (
     ResultsFolder,
     curve_variables,
     oblique_variables,
     status_attributes,
-    write_table,
 )
 from restitution.runs.attraction import Sticking, mean_of, stored, summary_of, with_errors
-from restitution.runs.companions import CONFIDENCE, Companions, half_interval
+from restitution.runs.companions import CONFIDENCE, half_interval
 from restitution.runs.error_budget import (
     MISSING_BAND,
-    Row,
-    add_errors,
+    ErrorBudget,
     interrupted_errors,
     total_error_summary,
 )
 from restitution.runs.log import RunLog, Say, ignore
-from restitution.runs.messages import message
 from restitution.runs.oblique import mean_oblique
 from restitution.runs.periodic import run_periodic
 from restitution.runs.refinement import settled
-from restitution.runs.result_warnings import too_coarse_for_adhesion
+from restitution.runs.result_warnings import too_coarse_for_adhesion, unresolved
 from restitution.runs.run import run_case
 
-# Columns that combine only surfaces on which an impact has this maximum indentation.
-_OF_IMPACTS = (
-    "restitution",
-    "impact_velocity_m_per_s",
-    "restitution_error",
-    "model_error",
-    "sticks",
-)
-# Columns of an ensemble's curve that are not means, and the functions that combine the values of
+# Fields that combine only surfaces on which an impact has this maximum indentation.
+_OF_IMPACTS = ("restitution", "impact_velocity", "restitution_error", "model_error", "sticks")
+# Fields of an ensemble's curve that are not means, and the functions that combine the values of
 # the surfaces. Flags are not listed: they are true if they are true for all surfaces.
 _WORST: dict[str, Callable[[list[float]], float]] = {
-    "adhesive_spacing_m": min,
+    "adhesive_spacing": min,
     "residual": max,
     "model_error": max,
     "median_patch_nodes": min,
@@ -71,7 +61,7 @@ def run_realisations(
 
     A periodic case is run by `run_periodic`. A single surface is run by `run_case` alone. If there
     are several surfaces, the run on surface n (n = 1, 2, …) is stored in a folder
-    `realisation-<n>`, and the curve of `out` contains the means (`mean_rows`). The seed of
+    `realisation-<n>`, and the curve of `out` contains the means (`mean_points`). The seed of
     surface n is the seed of the case plus n − 1. For a scan without a seed, `place` (the part of
     the scan that is used) increases in the same way. If the run on a surface fails, its error is
     recorded and the other runs continue. If all runs fail, the first error is raised. If the first
@@ -98,11 +88,10 @@ class _Ensemble:
         self, case: Case, text: str, folder: Path, out: ResultsFolder, log: RunLog
     ) -> None:
         self.case, self.text, self.folder, self.out, self.log = case, text, folder, out, log
-        self.curves: dict[int, list[Row]] = {}
-        self.oblique: list[list[Row]] = []
+        self.parts: dict[int, ResultsFolder] = {}
         self.failures: list[RestitutionError] = []
         self.ended: list[dict[str, Any]] = []
-        self.errors: list[Row] = []
+        self.errors: Sequence[Point] = ()
         self.band_errors: list[float] = []
         self.sticking: dict[int, Sticking] = {}
         self.one_sticking: Sticking | None = None  # with the errors of grid and materials
@@ -119,7 +108,7 @@ class _Ensemble:
         name = f"realisation {number + 1} of {self.case.realisations}"
         case = self.case.realisation(number)
         title = f"{case.title}, {name}" if case.title else name
-        part = ResultsFolder(self.out.path / f"realisation-{number + 1}")
+        part = self.out.part(f"realisation-{number + 1}")
         reason = ""
         try:
             # Most input warnings are the same for all surfaces, so only those of the first
@@ -143,12 +132,10 @@ class _Ensemble:
             reason = "stopped by the user"
             raise
         finally:
-            if part.rows:
-                self.curves[number] = part.rows
-                self.oblique.append(part.oblique)
-            self.ended.append(
-                {"realisation": number + 1, "depths": len(part.rows), "reason": reason}
-            )
+            depths = len(part.curve.points)
+            if depths:
+                self.parts[number] = part
+            self.ended.append({"realisation": number + 1, "depths": depths, "reason": reason})
 
     def _add_errors(self) -> None:
         """Estimate the errors due to grid and materials, on one surface.
@@ -156,50 +143,45 @@ class _Ensemble:
         This is the surface whose curve has the largest number of depths. The scatter between
         surfaces follows from the ensemble itself.
         """
-        if not self.curves or not self.case.total_error:
+        if not self.parts or not self.case.total_error:
             return
-        number = max(self.curves, key=lambda k: len(self.curves[k]))
-        case, rows = self.case.realisation(number), self.curves[number]
-        alone = [dict(row) for row in rows]
-        made: dict[int, Companions] = {}
+        number = max(self.parts, key=lambda k: len(self.parts[k].curve.points))
+        case, points = self.case.realisation(number), self.parts[number].curve.points
+        log = self.log
+        budget = ErrorBudget(
+            case, self.folder, points, log.progress, log.material_parts, scattered=False
+        )
         try:
-            self.band_errors = add_errors(
-                case,
-                self.folder,
-                case.surface(self.folder),
-                alone,
-                self.log.progress,
-                scattered=False,
-                parts=self.log.material_parts,
-                made=made,
-            )
+            budget.add(case.surface(self.folder))
             if number in self.sticking:
                 pair = self.sticking[number]
-                self.one_sticking = with_errors(pair, made[max(made)], scattered=False)
+                self.one_sticking = with_errors(pair, budget.finest, scattered=False)
         except RestitutionError as error:
-            self.log.warn(f"total_error is unknown: {error}")
-        self.errors = alone
+            log.warn(f"total_error is unknown: {error}")
+        self.errors, self.band_errors = budget.points, budget.band
 
     def keep(self) -> dict[str, Any]:
         """Write the curve of the ensemble, its summary and the table of all surfaces."""
-        if not self.curves:
+        if not self.parts:
             return {}
-        rows = mean_rows(list(self.curves.values()), self.errors)
-        self.out.put_curve(rows)
-        write_table(
-            self.out.path / "realisations.csv",
-            [{"realisation": k + 1, **row} for k, of in self.curves.items() for row in of],
+        points = mean_points([part.curve.points for part in self.parts.values()], self.errors)
+        self.out.put_curve(points)
+        self.out.put_table(
+            "realisations.csv",
+            [{"realisation": k + 1} | row for k, part in self.parts.items() for row in part.rows],
         )
-        one = RunResults(self.out.path / f"realisation-{min(self.curves) + 1}")
+        one = self.parts[min(self.parts)].results
         summary = self._summary(one.summary)
-        self.out.put_oblique(mean_oblique(self.oblique))
-        dataset = one.smooth().assign(curve_variables(rows) | oblique_variables(self.out.oblique))
+        self.out.put_oblique(mean_oblique([part.oblique for part in self.parts.values()]))
+        more = curve_variables(points) | oblique_variables(self.out.oblique)
+        dataset = one.smooth().assign(more)
         dataset.attrs |= status_attributes(summary)
         self.out.write(dataset, summary)
         return summary
 
     def _summary(self, one: dict[str, Any]) -> dict[str, Any]:
-        whole = [row for of in self.curves.values() for row in of]
+        points = self.out.curve.points
+        whole = [point for part in self.parts.values() for point in part.curve.points]
         return {
             "title": self.case.title,
             "status": self.log.status,
@@ -208,7 +190,7 @@ class _Ensemble:
             "realisations": self.ended,
             "confidence": CONFIDENCE,
             "depths_asked": len(self.case.depths()),
-            "depths_computed": len(self.out.rows),
+            "depths_computed": len(points),
             "warnings": [*self.log.warnings, *self._result_warnings(whole)],
             "sticking": summary_of(mean_of(list(self.sticking.values()), self.one_sticking)),
             **{
@@ -227,20 +209,21 @@ class _Ensemble:
                 f"largest_{name}": largest(whole, name)
                 for name in ("residual", "restitution_error")
             }
-            | total_error_summary(self.case, self.out.rows, self.log.material_parts),
-            "convolutions": sum(int(row["convolutions"]) for row in whole),
+            | total_error_summary(self.case, points, self.log.material_parts),
+            "convolutions": sum(int(point.convolutions) for point in whole),
             "seconds": self.log.seconds,
         }
 
-    def _result_warnings(self, whole: list[Row]) -> Iterator[str]:
-        """Yield the warnings about the rows of all surfaces (`whole`) and about their means."""
-        depths = [row["max_indentation_m"] for row in whole]
-        patches = [row["median_patch_nodes"] for row in whole]
-        yield from map(message, unresolved_patches(depths, patches))
+    def _result_warnings(self, whole: list[Point]) -> Iterator[str]:
+        """Yield the warnings about the points of all surfaces (`whole`) and about their means."""
+        means = self.out.curve.points
+        yield from unresolved(whole)
         grid = self.case.realisation(0).contact(self.folder).grid
         yield from too_coarse_for_adhesion(self.case, grid, whole, self.log.seconds)
-        yield from interrupted_errors(self.case, self.out.rows, self.log.status)
-        fewest = min((row["realisations"] for row in self.out.rows), default=math.inf)
+        yield from interrupted_errors(self.case, means, self.log.status)
+        fewest = min(
+            (mean.realisations for mean in means if isinstance(mean, MeanPoint)), default=math.inf
+        )
         if fewest < self.case.realisations:
             yield (
                 f"some depths are means of only {fewest:.0f} of {self.case.realisations} surfaces "
@@ -254,51 +237,62 @@ class _Ensemble:
             )
 
 
-def mean_rows(curves: Sequence[Sequence[Row]], errors: Sequence[Row] = ()) -> list[Row]:
-    """Make the curve of an ensemble: for each depth, a row of means over the surfaces.
+def mean_points(curves: Sequence[Sequence[Point]], errors: Sequence[Point] = ()) -> list[MeanPoint]:
+    """Make the curve of an ensemble: for each depth, a point of means over the surfaces.
 
-    A row is computed from the surfaces that reached its depth. Most columns are means over these
+    A point is computed from the surfaces that reached its depth. Most fields are means over these
     surfaces. `residual`, `model_error` and `refine` are the largest values, `median_patch_nodes` is
     the smallest value and `convolutions` the sum. Flags are true if they are true for all of these
-    surfaces. Additional columns are the number n of surfaces, the sample standard deviation s of
-    COR, and the ends of the 95 % confidence interval of the mean COR. The interval is
-    mean ± t s/√n with Student's t, clipped to [0, 1]. With one surface, s and the ends are NaN.
+    surfaces. The 95 % confidence interval of the mean COR is mean ± t s/√n with Student's t, the
+    sample standard deviation s and the number n of surfaces, clipped to [0, 1]. With one surface,
+    s and the ends are NaN.
 
-    `errors` are the rows of one surface. Their errors due to grid and materials are copied to the
-    rows of the means. `surface_scatter` is half of the width of the confidence interval. If only
-    one surface reached a depth, the total error of this depth stays unknown.
+    `errors` are the points of one surface. Their errors due to grid and materials are copied to the
+    means. `surface_scatter` is half of the width of the confidence interval. If only one surface
+    reached a depth, the total error of this depth stays unknown.
     """
-    rows = []
-    for depth in range(max(map(len, curves), default=0)):
-        of = [curve[depth] for curve in curves if len(curve) > depth]
-        # Surfaces on which an impact has this maximum indentation; all if there is none.
-        met = [surface for surface in of if not math.isnan(surface["restitution"])] or of
-        row: Row = {}
-        for name, column in COLUMNS.items():
-            values = [surface[name] for surface in (met if name in _OF_IMPACTS else of)]
-            row[name] = all(values) if column.flag else float(_WORST.get(name, np.mean)(values))
-        restitution = [surface["restitution"] for surface in met]
-        n = len(met)
-        std = _deviation(restitution)
-        interval = half_interval(n) if n > 1 else math.nan
-        half = interval * std
-        half_pull_off = interval * _deviation([surface["pull_off_force_N"] for surface in met])
-        row["realisations"] = len(of)
-        row["restitution_std"] = std
-        row["restitution_low"] = max(row["restitution"] - half, 0.0)
-        row["restitution_high"] = min(row["restitution"] + half, 1.0)
-        if depth < len(errors) and not math.isnan(errors[depth]["total_error"]):
-            for name in ("discretisation_error", "material_error"):
-                row[name] = errors[depth][name]
-            row["resolved"] = bool(row["resolved"]) and bool(errors[depth]["resolved"])
-            row["surface_scatter"] = half
-            row["pull_off_error_N"] = math.hypot(errors[depth]["pull_off_error_N"], half_pull_off)
-            if n > 1:
-                row["total_error"] = total(row)
-        rows.append(row)
-    return rows
+    count = max(map(len, curves), default=0)
+    alone: list[Point | None] = [
+        None if math.isnan(point.total_error) else point for point in errors[:count]
+    ]
+    alone += [None] * (count - len(alone))
+    return [_mean([of[k] for of in curves if len(of) > k], alone[k]) for k in range(count)]
 
 
-def _deviation(values: Sequence[float]) -> float:
+def _mean(surfaces: Sequence[Point], errors: Point | None) -> MeanPoint:
+    # Surfaces on which an impact has this maximum indentation; all if there is none.
+    met = [point for point in surfaces if not math.isnan(point.restitution)] or surfaces
+    means: dict[str, Any] = {}
+    for part, column in zip(fields(Point), Point.columns().values(), strict=True):
+        of = [
+            getattr(point, part.name) for point in (met if part.name in _OF_IMPACTS else surfaces)
+        ]
+        means[part.name] = all(of) if column.flag else float(_WORST.get(part.name, np.mean)(of))
+    n = len(met)
+    interval = half_interval(n) if n > 1 else math.nan
+    std = deviation([point.restitution for point in met])
+    half = interval * std
+    mean = MeanPoint(
+        **means,
+        realisations=len(surfaces),
+        restitution_std=std,
+        restitution_low=max(means["restitution"] - half, 0.0),
+        restitution_high=min(means["restitution"] + half, 1.0),
+    )
+    if errors is None:
+        return mean
+    half_pull_off = interval * deviation([point.pull_off_force for point in met])
+    mean = replace(
+        mean,
+        discretisation_error=errors.discretisation_error,
+        material_error=errors.material_error,
+        resolved=mean.resolved and errors.resolved,
+        surface_scatter=half,
+        pull_off_error=math.hypot(errors.pull_off_error, half_pull_off),
+    )
+    return replace(mean, total_error=mean.combined_error) if n > 1 else mean
+
+
+def deviation(values: Sequence[float]) -> float:
     """Sample standard deviation; NaN for one value."""
     return float(np.std(values, ddof=1)) if len(values) > 1 else math.nan

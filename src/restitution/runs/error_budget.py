@@ -41,23 +41,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from restitution.case.case import Case
+from restitution.curve.columns import Array, array
+from restitution.curve.curve import largest
+from restitution.curve.point import Point
 from restitution.display import counted
-from restitution.results.total_error import largest, total
-from restitution.runs.attraction import add_pull_off_errors
-from restitution.runs.companions import SURFACES, Array, Companions, half_interval
+from restitution.runs.attraction import with_pull_off_errors
+from restitution.runs.companions import SURFACES, Companions, half_interval
 from restitution.runs.log import Say, ignore
 from restitution.runs.material_advice import MaterialPart, advice, as_rows
 from restitution.runs.material_parts import material_parts
 from restitution.surfaces import Surface, rms_slope
 from restitution.surfaces.refine import coarsen
-
-Row = dict[str, float]
 
 # The grid leaves out short waves. The expected change of COR due to these waves is multiplied by
 # this safety factor.
@@ -124,20 +125,18 @@ class Band:
         return max(force / math.hypot(force, added * area), smallest)
 
 
-def unseen_yield(companions: Companions, waves: Band, rows: Sequence[Row]) -> Array:
-    """Error of COR of `rows` due to nodes that would yield only on a finer grid.
+def unseen_yield(companions: Companions, waves: Band, points: Sequence[Point]) -> Array:
+    """Error of COR of `points` due to nodes that would yield only on a finer grid.
 
     This is the term q² D of the formula at the top of this file. `waves` describes the waves that
     the grid of the rows leaves out.
     """
-    work, stored, plastic = (
-        np.array([row[name] for row in rows])
-        for name in ("loading_work_J", "stored_energy_J", "plastic_work_J")
-    )
+    work = array(points, "loading_work")
+    stored, plastic = array(points, "stored_energy"), array(points, "plastic_work")
     E_star = companions.coarse.pair.contact_modulus
     ratios = [
-        waves.pressure_ratio(row["force_N"], row["contact_area_m2"], E_star)
-        for row in sorted(rows, key=lambda row: row["max_indentation_m"])
+        waves.pressure_ratio(point.force, point.contact_area, E_star)
+        for point in sorted(points, key=lambda point: point.indentation)
     ]
     weaker = companions.weaker(np.array(ratios))
     change = companions.own.at(work) - weaker.at(work)
@@ -145,7 +144,7 @@ def unseen_yield(companions: Companions, waves: Band, rows: Sequence[Row]) -> Ar
 
 
 def grid_error(
-    change: Array, unseen: Array, work: Array, rows: Sequence[Row], octaves: float
+    change: Array, unseen: Array, work: Array, points: Sequence[Point], octaves: float
 ) -> tuple[Array, Array]:
     """Discretisation error of COR of each row, and how much of it is due to omitted waves.
 
@@ -156,12 +155,12 @@ def grid_error(
     """
     near = np.sqrt(_smoothed(change**2, work, _NEAR_GRID))
     band = _BAND * octaves * near
-    floor = np.array([_floor(row) for row in rows])
+    floor = np.array([_floor(point) for point in points])
     return np.sqrt(near**2 + band**2 + unseen**2 + floor**2), band
 
 
 def widened_error(
-    error: float, last_change: float, unseen: float, row: Row, octaves: float
+    error: float, last_change: float, unseen: float, point: Point, octaves: float
 ) -> tuple[float, float]:
     """Widen `error`, the discretisation error of COR from a convergence study.
 
@@ -172,7 +171,7 @@ def widened_error(
     error due to the waves left out.
     """
     band = _BAND * octaves * last_change
-    return math.hypot(error, band, unseen, _floor(row)), band
+    return math.hypot(error, band, unseen, _floor(point)), band
 
 
 def scatter(restitution: Array, work: Array) -> Array:
@@ -221,71 +220,72 @@ def spread_errors(
     return columns
 
 
-def add_errors(
-    case: Case,
-    folder: Path,
-    surface: Surface,
-    rows: Sequence[Row],
-    progress: Say = ignore,
-    *,
-    scattered: bool = True,
-    parts: list[MaterialPart] | None = None,
-    made: dict[int, Companions] | None = None,
-) -> list[float]:
-    """Add the errors due to grid, surface and materials, and their total, to the rows of a run.
+class ErrorBudget:
+    """Adds the errors due to grid, surface and materials, and their total, to points of a run.
 
-    `surface` is the surface on the grid of the largest depth. If `scattered` is false, the scatter
-    between surfaces is left out. A row whose loading work is not positive stays unchanged, because
-    the depth of this row cannot be the maximum indentation of an impact. The total error of a row
-    is set only if all of its parts are known. The contributions of the library values are appended
-    to `parts`, and the companion curves of each refinement factor are put into `made`. Returns the
-    errors due to waves that the grid leaves out, one for each row with a
-    positive loading work.
+    Points whose loading work is not positive stay unchanged, because no impact has their depth. The
+    total error of a point is set only if all of its parts are known. `points` has the errors so
+    far, and `band` the errors due to waves that the grid leaves out, one for each impact. `finest`
+    holds the companion curves of the finest grid. The contributions of the library values are
+    appended to `parts`. If `scattered` is false, the scatter between surfaces is left out.
     """
-    band: list[float] = []
-    reached = [row for row in rows if row["loading_work_J"] > 0]
-    for factor in dict.fromkeys(int(row["refine"]) for row in reached):
-        level = [row for row in reached if row["refine"] == factor]
-        own = case.grid.factor == factor
-        its = case if own else case.refined(factor)
-        of = surface if own else its.surface(folder)
-        depths = sorted(row["max_indentation_m"] for row in level)
-        companions = Companions(its, folder, depths)
-        band += _add_errors(companions, of, level, progress, scattered=scattered, parts=parts)
-        if made is not None:
-            made[factor] = companions
-    return band
 
+    def __init__(
+        self,
+        case: Case,
+        folder: Path,
+        points: Sequence[Point],
+        progress: Say = ignore,
+        parts: list[MaterialPart] | None = None,
+        *,
+        scattered: bool = True,
+    ) -> None:
+        self.points, self.band, self.parts = list(points), list[float](), parts
+        self._case, self._folder, self._progress = case, folder, progress
+        self._scattered = scattered
+        self._companions: dict[int, Companions] = {}
 
-def _add_errors(
-    companions: Companions,
-    surface: Surface,
-    reached: Sequence[Row],
-    progress: Say,
-    *,
-    scattered: bool,
-    parts: list[MaterialPart] | None,
-) -> list[float]:
-    """Do the work of `add_errors` for the rows of one grid.
+    @property
+    def finest(self) -> Companions:
+        """Companion curves of the finest grid."""
+        return self._companions[max(self._companions)]
 
-    The loading work must be positive in all of these rows.
-    """
-    work = np.array([row["loading_work_J"] for row in reached])
-    restitution = np.array([row["restitution"] for row in reached])
-    waves = Band.of(surface)
-    progress("error: cells twice as large")
-    change = restitution - companions.own.at(work)
-    unseen = unseen_yield(companions, waves, reached)
-    errors, band = grid_error(change, unseen, work, reached, waves.octaves)
-    columns = {"discretisation_error": errors}
-    columns |= spread_errors(companions, work, progress, scattered=scattered, parts=parts)
-    for k, row in enumerate(reached):
-        row.update({name: float(values[k]) for name, values in columns.items()})
-        row["resolved"] = bool(row["resolved"]) and not band[k] > MISSING_BAND
-        if all(math.isfinite(values[k]) for values in columns.values()):
-            row["total_error"] = total(row)
-    add_pull_off_errors(companions, reached, scattered=scattered)
-    return [float(error) for error in band]
+    def add(self, surface: Surface) -> None:
+        """Compute the errors; `surface` is the surface on the grid of the largest depth."""
+        reached = [k for k, point in enumerate(self.points) if point.loading_work > 0]
+        for factor in dict.fromkeys(int(self.points[k].refine) for k in reached):
+            level = [k for k in reached if self.points[k].refine == factor]
+            own = self._case.grid.factor == factor
+            case = self._case if own else self._case.refined(factor)
+            depths = sorted(self.points[k].indentation for k in level)
+            companions = Companions(case, self._folder, depths)
+            on = surface if own else case.surface(self._folder)
+            known = [self.points[k] for k in level]
+            for k, point in zip(level, self._with_errors(companions, on, known), strict=True):
+                self.points[k] = point
+            self._companions[factor] = companions
+
+    def _with_errors(
+        self, companions: Companions, surface: Surface, points: Sequence[Point]
+    ) -> list[Point]:
+        work, waves = array(points, "loading_work"), Band.of(surface)
+        self._progress("error: cells twice as large")
+        change = array(points, "restitution") - companions.own.at(work)
+        unseen = unseen_yield(companions, waves, points)
+        errors, band = grid_error(change, unseen, work, points, waves.octaves)
+        columns = {"discretisation_error": errors} | spread_errors(
+            companions, work, self._progress, scattered=self._scattered, parts=self.parts
+        )
+        self.band += band.tolist()
+        new = []
+        for k, point in enumerate(points):
+            own: dict[str, Any] = {name: float(of[k]) for name, of in columns.items()}
+            resolved = point.resolved and not band[k] > MISSING_BAND
+            point = replace(point, **own, resolved=resolved)
+            if all(math.isfinite(error) for error in own.values()):
+                point = replace(point, total_error=point.combined_error)
+            new.append(point)
+        return with_pull_off_errors(companions, new, scattered=self._scattered)
 
 
 def band_warning(surface: Surface, band_errors: Sequence[float]) -> Iterator[str]:
@@ -314,29 +314,29 @@ def band_warning(surface: Surface, band_errors: Sequence[float]) -> Iterator[str
 
 
 def total_error_summary(
-    case: Case, rows: Sequence[Row], parts: Sequence[MaterialPart] = ()
+    case: Case, points: Sequence[Point], parts: Sequence[MaterialPart] = ()
 ) -> dict[str, object]:
-    """The entries of `summary.json` about the total error of `rows` and its `parts`."""
-    known = [row["total_error"] for row in rows if not math.isnan(row["total_error"])]
+    """The entries of `summary.json` about the total error of `points` and its `parts`."""
+    known = largest(points, "total_error")
     values = as_rows(parts)
     return {
-        "largest_total_error": max(known, default=None),
-        "largest_model_error": largest(rows, "model_error"),
-        "total_error_includes": ", ".join(included(case)) if known else "",
+        "largest_total_error": known,
+        "largest_model_error": largest(points, "model_error"),
+        "total_error_includes": ", ".join(included(case)) if known is not None else "",
         "total_error_does_not_include": NOT_INCLUDED,
         **({"material_errors": values, "material_advice": advice(values)} if values else {}),
     }
 
 
-def interrupted_errors(case: Case, rows: Sequence[Row], status: str) -> Iterator[str]:
+def interrupted_errors(case: Case, points: Sequence[Point], status: str) -> Iterator[str]:
     """Yield a warning if rows lack their total error because the run was interrupted.
 
     `status` says how the run ended (`RunLog.status`).
     """
-    missing = sum(math.isnan(row["total_error"]) for row in rows)
+    missing = sum(math.isnan(point.total_error) for point in points)
     if case.total_error and status == "interrupted" and missing:
         yield (
-            f"total_error is missing at {missing} of {counted(len(rows), 'depth')}, because the "
+            f"total_error is missing at {missing} of {counted(len(points), 'depth')}, because the "
             "run was stopped before it was computed; run the case again into a new folder"
         )
 
@@ -366,9 +366,9 @@ def steps(case: Case) -> int:
     return 1 + surfaces + int(case.has_library_values())
 
 
-def _floor(row: Row) -> float:
+def _floor(point: Point) -> float:
     """Minimum discretisation error of a row: the product of s and f (see the top of this file)."""
-    nodes = max(row["median_patch_nodes"], 1.0)
+    nodes = max(point.median_patch_nodes, 1.0)
     expected = math.exp(np.interp(math.log(nodes), np.log(_PATCH_NODES), np.log(_PATCH_ERROR)))
     return expected * float(np.interp(nodes, _FEW_NODES, _SHARE))
 

@@ -19,7 +19,8 @@ from typing import Any
 import numpy as np
 
 from restitution.case.materials import Property
-from restitution.runs.companions import ENDS, Array, Companions, moved
+from restitution.curve.columns import Array
+from restitution.runs.companions import ENDS, Companions, moved
 from restitution.runs.material_advice import MaterialPart
 
 _ELASTIC = ("youngs_modulus", "poissons_ratio")

@@ -12,20 +12,17 @@ from typing import Any
 from restitution.case.case import Case
 from restitution.case.derived import deepest_indentation, derived_quantities
 from restitution.case.roughness import MeasuredRoughness
-from restitution.contact.checks.resolution import unresolved_patches
 from restitution.contact.state import State
 from restitution.contact.stiffness import normal_stiffness
+from restitution.curve.follow import loaded
+from restitution.curve.periodic import Histogram, PeriodicPoint
 from restitution.errors import NotConvergedError
 from restitution.numerics.convolution.device import current
 from restitution.numerics.kernels import instruction_set
 from restitution.results.interruption import hold_signals
 from restitution.results.maps import DepthMaps, write_maps
 from restitution.results.periodic import (
-    COLUMNS,
-    Histogram,
     periodic_dataset,
-    periodic_row,
-    pressure_histogram,
 )
 from restitution.results.schema import PERIODIC_FILE
 from restitution.results.writer import (
@@ -33,11 +30,11 @@ from restitution.results.writer import (
     case_attributes,
     status_attributes,
     versions,
-    write_table,
 )
-from restitution.runs.depths import load_to
+from restitution.runs.depths import loads_of
 from restitution.runs.log import RunLog, Say, ignore
-from restitution.runs.messages import input_warnings, message, require_possible
+from restitution.runs.messages import input_warnings, require_possible
+from restitution.runs.result_warnings import unresolved
 from restitution.surfaces import describe
 
 _MAPS_ALONG = {"indentation_m": "depth", "nominal_pressure_Pa": "nominal_pressure"}
@@ -69,7 +66,7 @@ def run_periodic(
     def keep() -> dict[str, Any]:
         if not deepest:
             return {}
-        write_maps(out.path, maps, out.rows, COLUMNS, _MAPS_ALONG)
+        write_maps(out.path, maps, out.periodic, _MAPS_ALONG)
         return _write_results((case, text), out, log, deepest[-1], histograms)
 
     with log.record(out, keep):
@@ -78,18 +75,17 @@ def run_periodic(
         require_possible(contact, last)
         for warning in _edges_of_scans(case) + input_warnings(contact, last):
             log.warn(warning)
-        depths = case.depths()
-        for number, depth in enumerate(depths, 1):
-            state = load_to(case, contact, depth, deepest[-1] if deepest else None)
-            row = periodic_row(state, _stiffness(state))
+        count = len(case.depths())
+        for number, (_, state) in enumerate(loaded(loads_of(case, folder, contact)), 1):
+            point = PeriodicPoint.of(state, _stiffness(state))
             with hold_signals():  # an interruption leaves a complete row or no row
-                out.rows.append(row)
+                out.periodic.append(point)
                 if case.maps == "all":
                     maps.append(DepthMaps.of(state))
-                histograms.append(pressure_histogram(state))
+                histograms.append(Histogram.of(state))
                 deepest[:] = [state]
-                write_table(out.path / PERIODIC_FILE, out.rows)
-            progress(f"{number} of {len(depths)} depths")
+                out.put_table(PERIODIC_FILE, out.periodic)
+            progress(f"{number} of {count} depths")
     return log.summary
 
 
@@ -119,17 +115,14 @@ def _write_results(
     histograms: Sequence[Histogram],
 ) -> dict[str, Any]:
     """Write the results of the case `read` and its text; return the summary."""
-    (case, text), contact, rows = read, deepest.contact, out.rows
-    found = unresolved_patches(
-        [row["indentation_m"] for row in rows], [row["median_patch_nodes"] for row in rows]
-    )
+    (case, text), contact, points = read, deepest.contact, out.periodic
     summary: dict[str, Any] = {
         "title": case.title,
         "status": log.status,
         "reason": log.reason,
         "depths_asked": len(case.depths()),
-        "depths_computed": len(rows),
-        "warnings": log.warnings + [message(each) for each in found],
+        "depths_computed": len(points),
+        "warnings": [*log.warnings, *unresolved(points)],
         "model": {
             "plasticity": "none" if math.isinf(contact.hardness) else contact.plasticity,
             "adhesion": contact.adhesion if contact.adhesive else "none",
@@ -142,14 +135,14 @@ def _write_results(
         "derived": derived_quantities(case, contact),
         "surface": dict(contact.surface.provenance),
         "surface_statistics": describe(contact.surface),
-        "diagnostics": {"largest_residual": max(row["residual"] for row in rows)},
+        "diagnostics": {"largest_residual": max(point.residual for point in points)},
         "device": current().name,
         "kernels": instruction_set,
-        "convolutions": sum(int(row["convolutions"]) for row in rows),
+        "convolutions": sum(int(point.convolutions) for point in points),
         "seconds": log.seconds,
         "versions": versions(),
     }
-    dataset = periodic_dataset(rows, histograms, deepest)
+    dataset = periodic_dataset(points, histograms, deepest)
     dataset.attrs = status_attributes(summary) | case_attributes(summary, text)
     out.write(dataset, summary)
     return summary

@@ -6,12 +6,12 @@ import math
 from collections.abc import Iterator, Sequence
 
 from restitution.case.case import Case
-from restitution.contact.checks.resolution import unresolved_adhesion
+from restitution.contact.checks.resolution import unresolved_adhesion, unresolved_patches
+from restitution.curve.periodic import PeriodicPoint
+from restitution.curve.point import Point
 from restitution.display import duration
 from restitution.numerics.grid import Grid
 from restitution.runs.messages import message
-
-Row = dict[str, float]
 
 # The time of a run grows with the inverse of the cell size to this power.
 _GROWTH = 2.3
@@ -21,20 +21,27 @@ _IMPRECISE = 0.02  # numerical error of COR
 _BALANCE = 0.01  # relative difference of unloading work and stored energy
 
 
+def unresolved(points: Sequence[Point | PeriodicPoint]) -> Iterator[str]:
+    """Yield a warning if contact patches have too few nodes."""
+    depths = [point.indentation for point in points]
+    patches = [point.median_patch_nodes for point in points]
+    yield from map(message, unresolved_patches(depths, patches))
+
+
 def too_coarse_for_adhesion(
-    case: Case, grid: Grid, rows: Sequence[Row], seconds: float
+    case: Case, grid: Grid, points: Sequence[Point], seconds: float
 ) -> Iterator[str]:
     """Yield a warning if cells are too large for adhesion, with the finer grid and its cost.
 
-    `grid` is the grid of the deepest of the `rows`, and `seconds` is the time of the run so far.
+    `grid` is the grid of the deepest of the `points`, and `seconds` is the time of the run so far.
     """
     factor = case.grid.factor
     unrefined = factor * max(grid.spacing)
-    adhesive = [row for row in rows if not math.isnan(row["adhesive_spacing_m"])]
+    adhesive = [point for point in points if not math.isnan(point.adhesive_spacing)]
     for found in unresolved_adhesion(
-        [row["max_indentation_m"] for row in adhesive],
-        [unrefined / row["refine"] for row in adhesive],
-        [row["adhesive_spacing_m"] for row in adhesive],
+        [point.indentation for point in adhesive],
+        [unrefined / point.refine for point in adhesive],
+        [point.adhesive_spacing for point in adhesive],
         unrefined,
     ):
         nx, ny = (n * found["refine"] // factor for n in grid.nodes)
@@ -43,29 +50,31 @@ def too_coarse_for_adhesion(
         yield f"{message(found)} ({nx} x {ny} nodes, about {cost})"
 
 
-def imprecise(rows: Sequence[Row], case: Case) -> Iterator[str]:
+def imprecise(points: Sequence[Point], case: Case) -> Iterator[str]:
     """Yield a warning if the COR of some depths is less precise than requested."""
     asked = max(_IMPRECISE, case.unloading.restitution_error)
-    missed = [row for row in rows if row["restitution_error"] > asked]
+    missed = [point for point in points if point.restitution_error > asked]
     if missed:
-        worst = max(missed, key=lambda row: row["restitution_error"])
+        worst = max(missed, key=lambda point: point.restitution_error)
         why = (
             'unloading is an estimate; set unloading.method = "path"'
             if case.unloading.method == "energy-estimate"
             else "contact forms and breaks in jumps at these depths; use a finer grid"
         )
         yield (
-            f"restitution_error is above {asked:g} at {len(missed)} of {len(rows)} depths, "
-            f"at worst {worst['restitution_error']:.2g} at {1e9 * worst['max_indentation_m']:.4g} "
+            f"restitution_error is above {asked:g} at {len(missed)} of {len(points)} depths, "
+            f"at worst {worst.restitution_error:.2g} at {1e9 * worst.indentation:.4g} "
             f"nm: {why}"
         )
 
 
-def velocities_missed(rows: Sequence[Row], case: Case, computed: Sequence[float]) -> Iterator[str]:
+def velocities_missed(
+    points: Sequence[Point], case: Case, prescribed: Sequence[float]
+) -> Iterator[str]:
     """Yield a warning if impact velocities differ from the prescribed values."""
     if case.impact is None:
         return
-    pairs = zip((row["impact_velocity_m_per_s"] for row in rows), computed, strict=False)
+    pairs = zip((point.impact_velocity for point in points), prescribed, strict=False)
     off = {asked: abs(met / asked - 1) for met, asked in pairs}
     missed = [asked for asked, miss in off.items() if not miss <= _VELOCITY]
     if missed:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -14,20 +14,17 @@ from restitution.case.case import Case
 from restitution.case.derived import deepest_indentation, derived_quantities
 from restitution.case.omissions import omissions
 from restitution.collision import Collision, collide
-from restitution.contact.checks.resolution import (
-    unresolved_patches,
-)
 from restitution.contact.cohesive import CohesiveState
 from restitution.contact.contact import FULL_CONSTRAINT, Contact
 from restitution.contact.state import State
 from restitution.contact.unloading_curve import unloading_curve
-from restitution.errors import DomainError, RestitutionError
+from restitution.curve.curve import largest
+from restitution.curve.follow import Impact, follow
+from restitution.errors import DomainError, NotConvergedError, RestitutionError
 from restitution.numerics.convolution.device import current
 from restitution.numerics.kernels import instruction_set
 from restitution.results.interruption import hold_signals
 from restitution.results.maps import DepthMaps, write_maps
-from restitution.results.schema import COLUMNS
-from restitution.results.total_error import largest
 from restitution.results.writer import (
     ResultsFolder,
     case_attributes,
@@ -36,22 +33,22 @@ from restitution.results.writer import (
     versions,
 )
 from restitution.runs.attraction import Sticking, sticking, summary_of, with_errors
-from restitution.runs.companions import Companions
-from restitution.runs.depths import Depth, collision_at, loaded_depths
+from restitution.runs.depths import CaseUnloading, loads_of
 from restitution.runs.error_budget import (
-    add_errors,
+    ErrorBudget,
     band_warning,
     interrupted_errors,
     total_error_summary,
 )
 from restitution.runs.log import RunLog, Say, ignore
-from restitution.runs.messages import input_warnings, message, require_possible
-from restitution.runs.oblique import is_oblique, oblique_rows
+from restitution.runs.messages import input_warnings, require_possible
+from restitution.runs.oblique import is_oblique, oblique_points
 from restitution.runs.refinement import settled, with_chosen_adhesion
 from restitution.runs.result_warnings import (
     imprecise,
     too_coarse_for_adhesion,
     unbalanced,
+    unresolved,
     velocities_missed,
 )
 from restitution.runs.smooth import smooth_curve
@@ -81,11 +78,10 @@ class _Run(RunLog):
     errors: bool = True  # whether the run computes the total error
     deepest: State | None = None
     loading_work_errors: list[float] = field(default_factory=list)
-    asked: list[float] = field(default_factory=list)
+    prescribed: list[float] = field(default_factory=list)
     band_errors: list[float] = field(default_factory=list)
     depth_seconds: list[float] = field(default_factory=list)
     unloading_checks: list[dict[str, float]] = field(default_factory=list)
-    last_unloading: Sequence[State] = ()
     sticking: Sticking | None = None
     maps: list[DepthMaps] = field(default_factory=list)
 
@@ -130,30 +126,21 @@ def run_case(
         for warning in omissions(case) + input_warnings(contact, deepest, case.prescribed):
             run.warn(warning)
         with out.tables():
-            failure = _load_and_unload(
-                loaded_depths(case, folder, contact), case, out, run, go_on=errors
-            )
-        run.sticking = sticking(case, folder, out.rows)
-        if errors and case.total_error and out.rows:
-            made: dict[int, Companions] = {}
+            failure = _load_and_unload(case, folder, contact, out, run, go_on=errors)
+        run.sticking = sticking(case, folder, out.curve)
+        if errors and case.total_error and out.curve.points:
+            budget = ErrorBudget(case, folder, out.curve.points, run.progress, run.material_parts)
             try:
-                run.band_errors = add_errors(
-                    case,
-                    folder,
-                    contact.surface,
-                    out.rows,
-                    run.progress,
-                    parts=run.material_parts,
-                    made=made,
-                )
+                budget.add(contact.surface)
                 if run.sticking is not None:
-                    finest = made[max(made)]
-                    run.sticking = with_errors(run.sticking, finest, scattered=True)
+                    run.sticking = with_errors(run.sticking, budget.finest, scattered=True)
             except RestitutionError as error:
                 run.warn(f"total_error is unknown: {error}")
-            out.put_curve(out.rows)
-        if is_oblique(case) and out.rows:
-            oblique, missing = oblique_rows(case, contact.surface, out)
+            finally:
+                run.band_errors = budget.band
+                out.put_curve(budget.points)
+        if is_oblique(case) and out.curve.points:
+            oblique, missing = oblique_points(case, contact.surface, out)
             out.put_oblique(oblique)
             run.warnings += [missing] if missing else []
         if failure is not None:
@@ -169,59 +156,56 @@ def _write_results(
     summary["seconds"] = run.seconds
     dataset = results_dataset(out, deepest)
     with suppress(RestitutionError):  # if the smooth curve fails, the results omit it
-        dataset = dataset.assign(smooth_curve(deepest.contact, out.rows))
+        dataset = dataset.assign(smooth_curve(deepest.contact, out.curve.points))
     dataset.attrs = status_attributes(summary) | case_attributes(summary, text)
-    write_maps(out.path, run.maps[: len(out.rows)], out.rows, COLUMNS, _MAPS_ALONG)
+    points = out.curve.points
+    write_maps(out.path, run.maps[: len(points)], points, _MAPS_ALONG)
     out.write(dataset, summary)
     return summary
 
 
 def _load_and_unload(
-    depths: Iterable[Depth],
-    case: Case,
-    out: ResultsFolder,
-    run: _Run,
-    *,
-    go_on: bool,
+    case: Case, folder: Path, contact: Contact, out: ResultsFolder, run: _Run, *, go_on: bool
 ) -> RestitutionError | None:
     """Compute the depths one after the other; return the error of the first depth that failed."""
     count = len(case.depths())
-    curves = count if is_oblique(case) else case.unloading.curves
-    # Indices of the depths that are unloaded: evenly spaced, including the deepest depth.
-    unloaded = {count - 1 - (k * count) // curves for k in range(curves)}
+    failures: list[RestitutionError] = []
+    computed = 0
+
+    def failed(error: RestitutionError) -> bool:
+        if not isinstance(error, (NotConvergedError, DomainError)):
+            raise error
+        failures.append(error)
+        # A contact that reaches the edge of the grid ends the curve, because deeper contacts reach
+        # the edge, too.
+        if not go_on or isinstance(error, DomainError):
+            return False
+        run.progress(f"{computed + len(failures)} of {count} depths")
+        return True
+
+    loads = loads_of(case, folder, contact, unloaded=count if is_oblique(case) else None)
     began = time.perf_counter()
-    failure: RestitutionError | None = None
-    for number, depth in enumerate(depths):
-        if depth.state is None:
-            failure = failure or depth.error
-            # A contact that reaches the edge of the grid ends the curve, because deeper contacts
-            # reach the edge, too.
-            if not go_on or isinstance(depth.error, DomainError):
-                break
-        else:
-            _keep(depth, depth.state, case, out, run, number in unloaded)
-            run.depth_seconds.append(round(time.perf_counter() - began, 4))
-            began = time.perf_counter()
-        run.progress(f"{number + 1} of {count} depths")
-    return failure
+    for computed, impact in enumerate(follow(loads, CaseUnloading.of_case(case), failed), 1):
+        _keep(impact, case, out, run)
+        run.depth_seconds.append(round(time.perf_counter() - began, 4))
+        began = time.perf_counter()
+        run.progress(f"{computed + len(failures)} of {count} depths")
+    return failures[0] if failures else None
 
 
-def _keep(
-    depth: Depth, state: State, case: Case, out: ResultsFolder, run: _Run, unload: bool
-) -> None:
-    """Unload from a depth, and write its row of the curve."""
-    collision, back = collision_at(case, state, unload=unload, known=run.last_unloading)
-    run.last_unloading = back
+def _keep(impact: Impact, case: Case, out: ResultsFolder, run: _Run) -> None:
+    """Write the row of an impact, and its unloading curve if the case asks for it."""
+    state, collision = impact.state, impact.collision
     with hold_signals():  # an interruption leaves a complete row or no row
-        run.asked.append(depth.asked)
+        run.prescribed.append(impact.load.prescribed)
         run.loading_work_errors.append(state.work_error / max(abs(state.loading_work), 1e-300))
         if case.maps == "all":
             run.maps.append(DepthMaps.of(state))
-        out.add(state, collision, depth.refine, depth.touch)
+        out.add(impact.point)
         run.deepest = state
-    if unload and state.contact_nodes:
-        out.add_unloading(back, depth.touch)
-        run.unloading_checks.append(_check(state, back, collision))
+    if impact.load.unload and state.contact_nodes:
+        out.add_unloading(impact.unloading, impact.load.touch)
+        run.unloading_checks.append(_check(state, impact.unloading, collision))
 
 
 def _check(state: State, back: Sequence[State], collision: Collision) -> dict[str, float]:
@@ -252,12 +236,13 @@ def _unbalance(state: State, end: State, work: float, lost: float) -> float:
 
 
 def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> dict[str, Any]:
+    points = out.curve.points
     return {
         "title": case.title,
         "status": run.status,
         "reason": run.reason,
         "depths_asked": len(case.depths()),
-        "depths_computed": len(out.rows),
+        "depths_computed": len(points),
         "warnings": [*run.warnings, *_result_warnings(case, contact, out, run)],
         "model": {
             "plasticity": "none" if math.isinf(contact.hardness) else contact.plasticity,
@@ -278,15 +263,15 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> d
         "surface": dict(contact.surface.provenance),
         "surface_statistics": describe(contact.surface),
         "diagnostics": {
-            "largest_residual": max(row["residual"] for row in out.rows),
+            "largest_residual": largest(points, "residual"),
             "largest_loading_work_error": max(run.loading_work_errors),
-            "largest_restitution_error": largest(out.rows, "restitution_error"),
-            **total_error_summary(case, out.rows, run.material_parts),
+            "largest_restitution_error": largest(points, "restitution_error"),
+            **total_error_summary(case, points, run.material_parts),
             "unloading_checks": run.unloading_checks,
         },
         "device": current().name,
         "kernels": instruction_set,
-        "convolutions": sum(int(row["convolutions"]) for row in out.rows),
+        "convolutions": sum(int(point.convolutions) for point in points),
         "seconds_by_depth": run.depth_seconds,
         "versions": versions(),
     }
@@ -307,15 +292,14 @@ def _materials(case: Case) -> dict[str, Any]:
 
 def _result_warnings(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> Iterator[str]:
     """Yield the warnings about the results of the run."""
-    depths = [row["max_indentation_m"] for row in out.rows]
-    patches = [row["median_patch_nodes"] for row in out.rows]
-    yield from map(message, unresolved_patches(depths, patches))
-    yield from too_coarse_for_adhesion(case, contact.grid, out.rows, run.seconds)
+    points = out.curve.points
+    yield from unresolved(points)
+    yield from too_coarse_for_adhesion(case, contact.grid, points, run.seconds)
     yield from band_warning(contact.surface, run.band_errors)
     if run.errors:
-        yield from interrupted_errors(case, out.rows, run.status)
-    yield from imprecise(out.rows, case)
-    yield from velocities_missed(out.rows, case, run.asked)
+        yield from interrupted_errors(case, points, run.status)
+    yield from imprecise(points, case)
+    yield from velocities_missed(points, case, run.prescribed)
     if not contact.adhesive:
         yield from unbalanced(run.unloading_checks)
 

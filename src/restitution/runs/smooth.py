@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from restitution.collision import Collision, collide
+from restitution.collision import Collision
 from restitution.contact.checks.resolution import predicted_radius
 from restitution.contact.contact import Contact, smooth
 from restitution.contact.loading import solve
+from restitution.contact.state import State
+from restitution.curve.columns import Array
+from restitution.curve.follow import Load, Unloading, follow
+from restitution.curve.point import Point
 from restitution.numerics.grid import Grid
 from restitution.theory import FirstYield, Hertz
 
@@ -24,53 +28,72 @@ _DEPTHS = 20  # number of depths up to yield; the same number of depths is used 
 
 
 def smooth_curve(
-    contact: Contact, rows: list[dict[str, float]], check: Callable[[], None] = lambda: None
+    contact: Contact, points: Sequence[Point], check: Callable[[], None] = lambda: None
 ) -> dict[str, Any]:
     """Make the variables of results.nc for the smooth bodies: force, restitution and velocity.
 
-    The curve spans the depths and velocities of `rows`. Up to yield it is Hertz's solution. Beyond
-    yield, each depth is solved on a separate small grid. The result is empty for the yield model
-    `truncated`, because Thornton and Ning's formulas describe smooth bodies with this model. It is
-    also empty for adhesive contacts, because small grids do not resolve adhesion. `check` is called
-    before every solve, and may raise an error to end the curve. Raises the errors of `solve`.
+    The curve spans the depths and velocities of `points`. Up to yield it is Hertz's solution.
+    Beyond yield, each depth is solved on a separate small grid. The result is empty for the yield
+    model `truncated`, because Thornton and Ning's formulas describe smooth bodies with this model.
+    It is also empty for adhesive contacts, because small grids do not resolve adhesion. `check` is
+    called before every solve, and may raise an error to end the curve. Raises the errors of
+    `solve`.
     """
-    pair, p_y = contact.pair, contact.hardness
-    R, E_star = pair.radius, pair.contact_modulus
-    if contact.plasticity == "truncated" or contact.adhesive or not rows:
+    pair = contact.pair
+    if contact.plasticity == "truncated" or contact.adhesive or not points:
         return {}
-    last = max(row["max_indentation_m"] for row in rows)
+    depths, onset = _depths(contact, points)
+    hertz, elastic = Hertz(pair.radius, pair.contact_modulus), depths <= onset
+
+    def load(depth: float) -> Load:
+        spacing = _WIDTH * predicted_radius(pair, depth, contact.hardness) / _NODES
+        bodies = replace(contact, surface=smooth(Grid((_NODES, _NODES), (spacing, spacing))))
+
+        def to(_: State | None) -> State:
+            check()
+            return solve(bodies, depth)
+
+        return Load(bodies, to, depth)
+
+    force = [float(hertz.force(depth)) for depth in depths[elastic]]
+    works = [float(hertz.stored_energy(depth)) for depth in depths[elastic]]
+    collisions = [Collision(work, work, pair.mass) for work in works]
+    for impact in follow(map(load, depths[~elastic].tolist()), Unloading()):
+        force.append(impact.state.force)
+        collisions.append(impact.collision)
+    values = {
+        "indentation": ("m", "maximum indentation", depths),
+        "force": ("N", "normal force", force),
+        "restitution": ("1", "coefficient of restitution", [c.restitution for c in collisions]),
+        "impact_velocity": (
+            "m s-1",
+            "impact velocity",
+            [math.nan if pair.mass is None else c.impact_velocity for c in collisions],
+        ),
+    }
+    return {
+        f"smooth_{name}": (
+            "smooth",
+            np.array(of, dtype=float),
+            {"units": unit, "long_name": f"{words}, smooth, same model"},
+        )
+        for name, (unit, words, of) in values.items()
+    }
+
+
+def _depths(contact: Contact, points: Sequence[Point]) -> tuple[Array, float]:
+    """Depths (m) of the smooth curve, and the depth at which smooth bodies begin to yield."""
+    R, E_star = contact.pair.radius, contact.pair.contact_modulus
+    deepest = max(point.indentation for point in points)
     # Smooth bodies reach the same loading work at a smaller depth than rough bodies, so the smooth
     # curve may begin at a smaller depth.
-    least = min(row["loading_work_J"] for row in rows)
-    hertz = Hertz(R, E_star)
-    first = min(
-        float(hertz.indentation_from_energy(least)), *(row["max_indentation_m"] for row in rows)
-    )
+    least = min(point.loading_work for point in points)
+    begin = float(Hertz(R, E_star).indentation_from_energy(least))
+    first = min(begin, *(point.indentation for point in points))
     first_yield = contact.first_yield_pressure
-    elastic = math.isinf(first_yield)
-    onset = math.inf if elastic else float(FirstYield(R, E_star, first_yield).indentation)
-    between = min(max(first, onset), last)
-    ranges = ((first, between), (between, last))
-    depths = np.unique([np.geomspace(*ends, _DEPTHS) for ends in ranges])
-    force, cor, velocity = (np.empty(depths.size) for _ in range(3))
-    for k, depth in enumerate(depths):
-        check()
-        if depth <= onset:
-            work = float(hertz.stored_energy(depth))
-            force[k], collision = hertz.force(depth), Collision(work, work, pair.mass)
-        else:
-            spacing = _WIDTH * predicted_radius(pair, depth, p_y) / _NODES
-            grid = Grid((_NODES, _NODES), (spacing, spacing))
-            state = solve(replace(contact, surface=smooth(grid)), float(depth))
-            force[k], collision = state.force, collide(state)
-        cor[k] = collision.restitution
-        velocity[k] = math.nan if pair.mass is None else collision.impact_velocity
-    return {
-        name: ("smooth", values, {"units": unit, "long_name": f"{words}, smooth, same model"})
-        for name, values, unit, words in (
-            ("smooth_indentation", depths, "m", "maximum indentation"),
-            ("smooth_force", force, "N", "normal force"),
-            ("smooth_restitution", cor, "1", "coefficient of restitution"),
-            ("smooth_impact_velocity", velocity, "m s-1", "impact velocity"),
-        )
-    }
+    onset = math.inf
+    if math.isfinite(first_yield):
+        onset = float(FirstYield(R, E_star, first_yield).indentation)
+    between = min(max(first, onset), deepest)
+    ranges = ((first, between), (between, deepest))
+    return np.unique([np.geomspace(*ends, _DEPTHS) for ends in ranges]), onset

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from restitution.curve.curve import Curve
 from restitution.errors import OutputError
 from restitution.results.coordinates import with_coordinates
 from restitution.results.interruption import hold_signals
@@ -118,47 +119,41 @@ class StudyFolder:
             run.check()
         except (OutputError, OSError, ValueError, KeyError):
             return None
-        return "" if run.curve.rows and run.summary["status"] == "complete" else None
+        return "" if run.curve.points and run.summary["status"] == "complete" else None
 
     def write_tables(self) -> None:
         """Write `table.csv` and `study.nc` from the stored cases."""
         reasons = [self.reason(case) for case in self.study.cases]
         curves = [
-            RunResults(self.folder_of(case)).curve if reason == "" else None
+            RunResults(self.folder_of(case)).curve if reason == "" else Curve()
             for case, reason in zip(self.study.cases, reasons, strict=True)
         ]
-        cells = [curve.cells if curve else [] for curve in curves]
-        rows = [curve.rows if curve else [] for curve in curves]
-        write_table(self.path / "table.csv", self._rows(reasons, cells))
-        write_netcdf(self.path / "study.nc", with_coordinates(self._dataset(reasons, rows)))
+        write_table(self.path / "table.csv", self._rows(reasons, curves))
+        write_netcdf(self.path / "study.nc", with_coordinates(self._dataset(reasons, curves)))
         write_checksums(self.path, ["study.nc", "study.toml", "table.csv"])
 
-    def _rows(
-        self, reasons: list[str | None], curves: list[list[dict[str, str]]]
-    ) -> list[dict[str, str]]:
+    def _rows(self, reasons: list[str | None], curves: list[Curve]) -> list[dict[str, Any]]:
         """Make the rows of `table.csv`.
 
         Each row contains the swept values of a case and a row of its `curve.csv`. A case without a
         curve has one row.
         """
-        columns = next((list(cells[0]) for cells in curves if cells), list(COLUMNS))
+        columns = next((curve.points[0].columns() for curve in curves if curve.points), COLUMNS)
         rows = []
-        for case, reason, cells in zip(self.study.cases, reasons, curves, strict=True):
+        for case, reason, curve in zip(self.study.cases, reasons, curves, strict=True):
             swept = {key: as_text(value) for key, value in case.values.items()}
             end = {"case": case.name, "status": _status(reason), "reason": reason or ""}
-            for row in cells or [{}]:
+            for row in curve.rows or [{}]:
                 rows.append({**swept, **{name: row.get(name, "") for name in columns}, **end})
         return rows
 
-    def _dataset(
-        self, reasons: list[str | None], curves: list[list[dict[str, float]]]
-    ) -> xr.Dataset:
+    def _dataset(self, reasons: list[str | None], curves: list[Curve]) -> xr.Dataset:
         """Make a dataset of all curves.
 
         Its dimensions are the swept keys (or the cases, if the values are paired) and the depth.
         """
-        study = self.study
-        paired, depths = study.mode == "paired", max(map(len, curves), default=0)
+        study, rows_of = self.study, [curve.rows for curve in curves]
+        paired, depths = study.mode == "paired", max(map(len, rows_of), default=0)
         dims = ("case",) if paired else tuple(study.swept)
         coordinates = {
             key: ("case" if paired else key, *coordinate(values))
@@ -166,10 +161,10 @@ class StudyFolder:
         }
         data: dict[str, Any] = {}
         for name, column in ALL_COLUMNS.items():
-            if not any(name in rows[0] for rows in curves if rows):
+            if not any(name in rows[0] for rows in rows_of if rows):
                 continue
             values = np.full((len(study.cases), depths), np.nan)
-            for line, rows in zip(values, curves, strict=True):
+            for line, rows in zip(values, rows_of, strict=True):
                 line[: len(rows)] = [row.get(name, math.nan) for row in rows]
             data[column.variable] = column.labelled(
                 (*dims, "depth"), values.reshape(*study.shape, depths)

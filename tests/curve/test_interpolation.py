@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
-from restitution.laws.interpolation import RatioCurve
+from restitution.curve.interpolation import RatioCurve
 from restitution.theory import ThorntonNing
 from tolerance import approx
 

@@ -1,0 +1,1 @@
+"""The curve of restitution: points, interpolation, and the loop over depths that makes them."""
