@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import restitution as rs
+from restitution.errors import DomainError, OutputError
 from tolerance import approx
 
 
@@ -37,7 +38,7 @@ def test_a_run_gives_a_table_with_units(results):
     assert results.summary["status"] == "complete"
     assert 'RunResults: "A small rough contact", complete, 0 warnings' in repr(results)
     assert "4 of 4 depths to 300 nm, COR 0." in results._repr_html_()
-    assert repr(results.curve) == "Curve: 4 rows: max_indentation_m, force_N, contact_area_m2, …"
+    assert repr(results.curve) == "Curve: 4 points: COR 0.6387 to 0.6619"
     assert re.fullmatch(r"UnloadingCurve: \d+ points from 300 nm", repr(results.unloading[-1]))
 
 
@@ -131,3 +132,39 @@ def test_the_package_offers_its_version_and_theory():
     assert set(rs.__all__) | {"__version__"} <= set(dir(rs))
     for name in rs.__all__:
         assert getattr(rs, name) is not None
+
+
+def test_results_in_memory_are_those_of_a_folder(case_text, tmp_path):
+    case = tomllib.loads(case_text)
+    stored, kept = rs.run(case, out=tmp_path / "out"), rs.run(case)
+    assert kept.curve == stored.curve == rs.open_results(tmp_path / "out").curve
+    assert kept.folder is None
+    assert kept.curve.restitution.tolist() == stored.dataset["restitution"].values.tolist()
+    same = [name for name in kept.summary if "seconds" not in name]
+    assert {name: kept.summary[name] for name in same} == {
+        name: stored.summary[name] for name in same
+    }
+    assert kept.dataset.drop_attrs().equals(stored.dataset.drop_attrs())
+    assert rs.law_of(kept).points == rs.law_of(stored).points
+    with pytest.raises(OutputError, match=r"maps.nc: is not stored; give `run` a folder"):
+        _ = kept.maps
+
+
+def test_an_ensemble_in_memory_has_its_means(case_text, tmp_path):
+    case = tomllib.loads(case_text.replace("seed = 1", "seed = 1\nrealisations = 2"))
+    stored, kept = rs.run(case, out=tmp_path / "out"), rs.run(case)
+    assert kept.curve == stored.curve
+    assert kept.curve.realisations.tolist() == [2] * 4
+    assert kept.surfaces == 2
+
+
+def test_a_curve_is_interpolated_and_not_extrapolated(results):
+    curve, velocities = results.curve, results.curve.impact_velocity
+    assert curve.at(velocities).tolist() == approx(curve.restitution.tolist())
+    between = curve.at(np.sqrt(velocities[0] * velocities[1]))
+    assert min(curve.restitution[:2]) <= between <= max(curve.restitution[:2])
+    assert curve.errors["total_error"].tolist() == curve.total_error.tolist()
+    with pytest.raises(DomainError, match="nothing is extrapolated"):
+        curve.at(2 * velocities[-1])
+    with pytest.raises(AttributeError):
+        _ = curve.restitutions

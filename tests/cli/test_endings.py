@@ -11,7 +11,7 @@ import pytest
 import xarray as xr
 
 from restitution.errors import DomainError
-from restitution.runs import convergence, depths, ensemble, run
+from restitution.runs import convergence, depths, run
 
 CALL = "from restitution.cli import main; main()"
 
@@ -72,19 +72,18 @@ def test_an_interruption_after_the_last_depth_says_what_is_kept(cli, case, tmp_p
 
 
 @pytest.mark.parametrize(
-    ("verb", "module", "name"),
+    ("verb", "surfaces", "module", "name"),
     [
-        (("run",), run, "add_errors"),
-        (("run",), ensemble, "add_errors"),
-        (("converge", "--grids", "2"), convergence, "_add_errors"),
+        (("run",), 1, run.ErrorBudget, "add"),
+        (("run",), 2, run.ErrorBudget, "add"),
+        (("converge", "--grids", "2"), 1, convergence, "_spread_of"),
     ],
 )
 def test_an_interruption_of_the_error_curves_says_what_is_missing(
-    cli, case_text, tmp_path, monkeypatch, verb, module, name
+    cli, case_text, tmp_path, monkeypatch, verb, surfaces, module, name
 ):
     text = case_text.replace("steps = 4", "steps = 2")
-    if module is ensemble:
-        text = text.replace("seed = 1", "seed = 1\nrealisations = 2")
+    text = text.replace("seed = 1", f"seed = 1\nrealisations = {surfaces}")
     (tmp_path / "case.toml").write_text(text)
 
     def stop(*_, **__):
@@ -104,7 +103,7 @@ def test_a_total_error_that_cannot_be_computed_is_said(cli, case, tmp_path, monk
     def fail(*_, **__):
         raise DomainError("the edge")
 
-    monkeypatch.setattr(run, "add_errors", fail)
+    monkeypatch.setattr(run.ErrorBudget, "add", fail)
     status, _, said = cli("run", case, "-o", tmp_path / "out")
     assert status == 0
     assert said.count("Warning: total_error is unknown: the edge") == 1

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import pytest
 
+from points import mean_point, point
 from restitution.case.case_file import parse_case
 from restitution.errors import CaseError, DomainError, OutputError
 from restitution.laws import from_results
@@ -95,21 +96,21 @@ def test_the_bodies_are_those_of_the_case(run):
 def test_without_a_total_error_the_known_parts_are_the_error(run):
     law, rows = bare_law(run), rows_of(run)
     assert len(law.points) == len(rows) == 4
-    for point, row in zip(law.points, rows, strict=True):
+    for stored, row in zip(law.points, rows, strict=True):
         assert row["total_error"] == ""
-        assert point.error == approx(float(row["restitution_error"]))
-        assert point.pull_off_force == float(row["pull_off_force_N"])
+        assert stored.error == approx(float(row["restitution_error"]))
+        assert stored.pull_off_force == float(row["pull_off_force_N"])
     assert law.conventions.restitution_error.startswith("solver; not: ")
     assert "; model_error is up to 0." in law.conventions.restitution_error
 
 
 @pytest.mark.parametrize(("e", "largest"), [(0.8, 0.8), (0.3, 0.7)])
 def test_an_error_of_which_a_part_is_not_known_may_be_anything(e, largest):
-    row = {"restitution": e, "restitution_error": 0.03, "discretisation_error": 0.04}
-    assert from_results._error({**row, "total_error": 0.2}, asked=True) == 0.2
-    assert from_results._error({**row, "total_error": math.nan}, asked=True) == largest
-    assert from_results._error({**row, "total_error": math.nan}, asked=False) == approx(0.05)
-    assert from_results._error(row, asked=False) == approx(0.05)
+    one = point(restitution=e, restitution_error=0.03, discretisation_error=0.04, total_error=0.2)
+    assert from_results._error(one, asked=True) == 0.2
+    unknown = replace(one, total_error=math.nan)
+    assert from_results._error(unknown, asked=True) == largest
+    assert from_results._error(unknown, asked=False) == approx(0.05)
 
 
 def test_a_law_says_that_the_total_error_is_unknown_after_an_interruption(tmp_path):
@@ -131,11 +132,11 @@ def test_a_law_says_that_the_total_error_is_unknown_after_an_interruption(tmp_pa
 
 
 def test_the_ratio_of_a_mean_is_that_of_its_restitution_unless_it_sticks():
-    row = {"restitution": 0.5, "unloading_work_J": 3e-9}
-    assert from_results._ratio(row, 1e-8, means=False) == approx(0.3)
-    assert from_results._ratio(row, 1e-8, means=True) == 0.25
-    stuck = {"restitution": 0.0, "unloading_work_J": -3e-9}
-    assert from_results._ratio(stuck, 1e-8, means=True) == approx(-0.3)
+    works = {"loading_work": 1e-8, "unloading_work": 3e-9}
+    assert point(restitution=0.5, **works).ratio == approx(0.3)
+    assert mean_point(restitution=0.5, **works).ratio == 0.25
+    works["unloading_work"] = -3e-9
+    assert mean_point(restitution=0.0, **works).ratio == approx(-0.3)
 
 
 def test_both_fits_are_made_only_where_they_are_asked_for(run):

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from restitution.case.case_file import parse_case
-from restitution.laws.from_results import bare_law
 from restitution.curve.interpolation import RatioCurve
+from restitution.laws.from_results import bare_law
 from restitution.laws.law_files import read_laws
 from restitution.mixtures.family import families
 from restitution.mixtures.mixture_file import parse_mixture

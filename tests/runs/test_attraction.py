@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from restitution.case.case_file import parse_case
+from restitution.curve.work_curve import WorkCurve
 from restitution.results.reader import RunResults
 from restitution.results.writer import ResultsFolder
 from restitution.runs.attraction import (
@@ -18,7 +19,6 @@ from restitution.runs.attraction import (
     stored,
     summary_of,
 )
-from restitution.runs.companions import Curve
 from restitution.runs.ensemble import run_realisations
 from restitution.runs.run import run_case
 from restitution.theory import JKR
@@ -89,7 +89,7 @@ def test_a_soft_smooth_sphere_sticks_as_in_the_theory_of_jkr(tmp_path):
     for row in out.rows:
         miss = abs(row["pull_off_force_N"] - float(jkr.pull_off_force))
         assert miss < 2 * row["pull_off_error_N"]
-    words = in_words(found, out.rows)
+    words = in_words(found, out.curve.points)
     assert words.startswith("Sticks below ")
     assert "pull-off force" in words
     assert RunResults(out.path).summary["sticking"] == found
@@ -114,11 +114,11 @@ def test_without_densities_or_adhesion_nothing_is_said(tmp_path):
     light = SOFT.replace('density = "1050 kg/m^3"\n', "")
     out = ResultsFolder(tmp_path / "light")
     assert run_case(parse_case(light), light, tmp_path, out)["sticking"] == {}
-    assert "unknown (it needs densities" in in_words({}, out.rows)
+    assert "unknown (it needs densities" in in_words({}, out.curve.points)
     dry = SOFT.replace('work_of_adhesion = "0.05 J/m^2"\nadhesion = "jkr"\n', "")
     out = ResultsFolder(tmp_path / "dry")
     assert run_case(parse_case(dry), dry, tmp_path, out)["sticking"] == {}
-    assert in_words({}, out.rows) == ""
+    assert in_words({}, out.curve.points) == ""
 
 
 def test_what_is_stored_is_read_back():
@@ -141,18 +141,18 @@ def test_errors_come_from_grid_surfaces_and_materials():
         class case:  # noqa: N801
             roughness = (1,)
 
-        own = Curve(np.array([1.0, 10.0]), np.array([0.5, 5.0]), np.array([2.0, 2.0]))
+        own = WorkCurve(np.array([1.0, 10.0]), np.array([0.5, 5.0]), np.array([2.0, 2.0]))
 
         def others(self):
             flat = np.array([1.0, 10.0])
-            return [Curve(flat, flat, np.full(2, force)) for force in (2.2, 1.8)]
+            return [WorkCurve(flat, flat, np.full(2, force)) for force in (2.2, 1.8)]
 
         def material_ends(self):
             return [("low", "high")]
 
         def curve(self, end):
             force = {"low": 1.7, "high": 2.1}[end]
-            return Curve(np.array([1.0]), np.array([1.0]), np.array([force]))
+            return WorkCurve(np.array([1.0]), np.array([1.0]), np.array([force]))
 
     work = np.array([3.0])
     parts = curve_errors(Fake(), lambda c: c.pull_off_at(work), np.array([2.5]), scattered=True)

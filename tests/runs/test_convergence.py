@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from points import point
 from restitution.case.case_file import parse_case
 from restitution.errors import CaseError
 from restitution.results.writer import ResultsFolder
 from restitution.runs import convergence
-from restitution.runs.convergence import discretisation, observed_order, run_convergence
+from restitution.runs.convergence import _OnGrid, discretisation, observed_order, run_convergence
 from tolerance import approx
 
 
@@ -52,7 +53,8 @@ def test_values_that_go_up_and_down_have_an_error_but_no_order():
 
 def test_the_order_over_depths_is_that_of_the_root_mean_square():
     def depth(*values):
-        return {2**k: {"restitution": v, "resolved": True} for k, v in enumerate(values)}
+        on = [_OnGrid(point(restitution=v), 0, math.nan, math.nan) for v in values]
+        return {2**k: one for k, one in enumerate(on)}
 
     depths = [depth(0.5, 0.54, 0.53), depth(0.7, 0.66, 0.67)]
     assert observed_order(depths) == approx(2)

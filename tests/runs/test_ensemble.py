@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from scipy.stats import ttest_1samp
 
+from points import point
 from restitution.case.case_file import parse_case
 from restitution.errors import DomainError, SurfaceError
-from restitution.results.schema import COLUMNS
 from restitution.results.writer import ResultsFolder
-from restitution.runs.ensemble import mean_rows, run_realisations
+from restitution.runs.ensemble import mean_points, run_realisations
 from tolerance import approx
 
 
@@ -38,59 +38,58 @@ def test_every_surface_is_what_its_seed_alone_gives(case_text, tmp_path):
 
 
 def row(restitution, **more):
-    values = dict.fromkeys(COLUMNS, 1.0) | {"restitution": restitution, **more}
-    return values | dict.fromkeys(("sticks", "adhesion_resolved", "resolved"), True) | more
+    return point(restitution=restitution, **more)
 
 
 def test_statistics_are_those_of_student():
     values = [0.5, 0.55, 0.62, 0.48]
-    (mean,) = mean_rows([[row(value)] for value in values])
+    (mean,) = mean_points([[row(value)] for value in values])
     interval = ttest_1samp(values, 0).confidence_interval(0.95)
-    assert mean["restitution"] == approx(np.mean(values))
-    assert mean["restitution_std"] == approx(np.std(values, ddof=1))
-    assert mean["restitution_low"] == approx(interval.low)
-    assert mean["restitution_high"] == approx(interval.high)
-    assert mean["realisations"] == 4
+    assert mean.restitution == approx(np.mean(values))
+    assert mean.restitution_std == approx(np.std(values, ddof=1))
+    assert mean.restitution_low == approx(interval.low)
+    assert mean.restitution_high == approx(interval.high)
+    assert mean.realisations == 4
 
 
 def test_an_interval_stays_within_what_restitution_can_be():
-    (mean,) = mean_rows([[row(0.99)], [row(0.5)]])
-    assert mean["restitution_high"] == 1
-    assert mean["restitution_low"] == 0
+    (mean,) = mean_points([[row(0.99)], [row(0.5)]])
+    assert mean.restitution_high == 1
+    assert mean.restitution_low == 0
 
 
 def test_flags_are_those_of_all_and_trust_that_of_the_worst():
     good = row(0.5, resolved=True, residual=1e-9, median_patch_nodes=30, convolutions=7)
     bad = row(0.6, resolved=False, residual=3e-9, median_patch_nodes=12, convolutions=8)
-    (mean,) = mean_rows([[good], [bad]])
-    assert mean["resolved"] is False
-    assert mean["residual"] == 3e-9
-    assert mean["median_patch_nodes"] == 12
-    assert mean["convolutions"] == 15
+    (mean,) = mean_points([[good], [bad]])
+    assert mean.resolved is False
+    assert mean.residual == 3e-9
+    assert mean.median_patch_nodes == 12
+    assert mean.convolutions == 15
 
 
 def test_a_surface_that_ends_early_leaves_the_others_and_one_has_no_spread():
-    short, long = mean_rows([[row(0.5)], [row(0.7), row(0.6)]])
-    assert short["realisations"] == 2
-    assert long["realisations"] == 1
-    assert long["restitution"] == 0.6
-    assert np.isnan([long["restitution_std"], long["restitution_low"]]).all()
-    assert mean_rows([]) == []
+    short, long = mean_points([[row(0.5)], [row(0.7), row(0.6)]])
+    assert short.realisations == 2
+    assert long.realisations == 1
+    assert long.restitution == 0.6
+    assert np.isnan([long.restitution_std, long.restitution_low]).all()
+    assert mean_points([]) == []
 
 
 def test_a_mean_over_one_surface_has_no_total_error():
     a, b, c = (row(e, total_error=math.nan) for e in (0.5, 0.51, 0.6))
-    several, alone = mean_rows([[a, c], [b]], [row(0.5), row(0.6)])
-    assert several["total_error"] >= several["surface_scatter"] > 0.05
-    assert np.isnan(alone["total_error"])
+    several, alone = mean_points([[a, c], [b]], [row(0.5), row(0.6)])
+    assert several.total_error >= several.surface_scatter > 0.05
+    assert np.isnan(alone.total_error)
 
 
 def test_more_surfaces_narrow_the_interval():
     random = np.random.default_rng(0)
     widths = []
     for n in (5, 80):
-        (mean,) = mean_rows([[row(value)] for value in random.normal(0.5, 0.05, n)])
-        widths.append(mean["restitution_high"] - mean["restitution_low"])
+        (mean,) = mean_points([[row(value)] for value in random.normal(0.5, 0.05, n)])
+        widths.append(mean.restitution_high - mean.restitution_low)
     assert widths[1] < 0.5 * widths[0]
 
 

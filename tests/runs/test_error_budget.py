@@ -8,13 +8,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from points import point
 from restitution.case.case_file import parse_case
 from restitution.contact.path import loading_path
+from restitution.curve.work_curve import WorkCurve
 from restitution.errors import NotConvergedError
-from restitution.results.total_error import total
 from restitution.results.writer import ResultsFolder
 from restitution.runs import depths as depths_module
-from restitution.runs.companions import Companions, Curve, curve_of
+from restitution.runs.companions import Companions, curve_of
 from restitution.runs.convergence import run_convergence
 from restitution.runs.ensemble import run_realisations
 from restitution.runs.error_budget import (
@@ -31,11 +32,11 @@ PARTS = ("restitution_error", "discretisation_error", "surface_scatter", "materi
 NONE = np.zeros(4)
 
 
-def row(**more):
-    values = {"median_patch_nodes": 500.0, "adhesion_resolved": True, "restitution": 0.5}
-    values |= {"stored_energy_J": 1e-9, "plastic_work_J": 1e-9}
-    values |= {"max_indentation_m": 1e-8, "force_N": 1e-3, "contact_area_m2": 1e-12}
-    return {**values, **dict.fromkeys(PARTS, 0.0), **more}
+def one(**more):
+    values = {"median_patch_nodes": 500.0, "restitution": 0.5}
+    values |= {"stored_energy": 1e-9, "plastic_work": 1e-9}
+    values |= {"indentation": 1e-8, "force": 1e-3, "contact_area": 1e-12}
+    return point(**values | more)
 
 
 def run(text, path):
@@ -46,8 +47,8 @@ def run(text, path):
 
 def test_the_total_is_the_root_of_the_squares_within_what_cor_can_be_off():
     parts = dict(zip(PARTS, (0.01, 0.02, 0.03, math.nan), strict=True))
-    assert total(row(**parts)) == approx(math.sqrt(0.0014), rel=1e-12)
-    assert total(row(restitution=0.9, surface_scatter=5.0)) == approx(0.9, rel=1e-12)
+    assert one(**parts).combined_error == approx(math.sqrt(0.0014), rel=1e-12)
+    assert one(restitution=0.9, surface_scatter=5.0).combined_error == approx(0.9, rel=1e-12)
 
 
 def test_every_row_of_a_run_has_a_total_of_its_parts(case_text, tmp_path):
@@ -108,26 +109,26 @@ def test_the_surface_error_covers_the_mean_of_other_surfaces(case_text, tmp_path
 def test_a_difference_that_is_zero_by_chance_makes_no_error_zero():
     work = np.geomspace(1e-9, 1e-6, 4)
     change = np.array([0.04, 0.0, 0.04, 0.04])
-    error, band = grid_error(change, NONE, work, [row()] * 4, octaves=0.0)
+    error, band = grid_error(change, NONE, work, [one()] * 4, octaves=0.0)
     assert error[1] > 0.015
     assert (band == 0).all()
     for nodes, least in ((1, 0.4), (5, 0.05), (500, 1e-4)):
-        unseen, _ = grid_error(NONE, NONE, work, [row(median_patch_nodes=nodes)] * 4, 0.0)
+        unseen, _ = grid_error(NONE, NONE, work, [one(median_patch_nodes=nodes)] * 4, 0.0)
         assert (unseen > least).all()
 
 
 def test_waves_beyond_the_grid_count_by_the_slope_they_have():
     work = np.geomspace(1e-9, 1e-6, 3)
     change = np.full(3, 0.02)
-    without, _ = grid_error(change, NONE[:3], work, [row()] * 3, octaves=0.0)
-    error, band = grid_error(change, NONE[:3], work, [row()] * 3, octaves=2.0)
+    without, _ = grid_error(change, NONE[:3], work, [one()] * 3, octaves=0.0)
+    error, band = grid_error(change, NONE[:3], work, [one()] * 3, octaves=2.0)
     assert band == approx(np.full(3, 0.06), rel=1e-12)
     assert error == approx(np.hypot(without, 0.06), rel=1e-12)
 
 
 def test_an_elastic_contact_counts_what_a_lower_yield_pressure_would_change():
     def impact(restitution):
-        return Curve(np.array([1e-9]), np.array([1e-9 * restitution**2]), np.zeros(1))
+        return WorkCurve(np.array([1e-9]), np.array([1e-9 * restitution**2]), np.zeros(1))
 
     class Falling:
         """COR falls by 0.1 with the yield pressure, at any work."""
@@ -142,7 +143,7 @@ def test_an_elastic_contact_counts_what_a_lower_yield_pressure_would_change():
     # With p = 3/4 of the pressure ½E*(S² − S_2h²)^½ that the waves add, p/p_S = 3/5.
     waves = Band(octaves=0.0, slope=0.13, coarser_slope=0.05, removed_slope=0.0, pixel=1e-9)
     force = 0.75 * 0.5 * 1e11 * 0.12 * 1e-12
-    rows = [row(loading_work_J=1e-9, plastic_work_J=p, force_N=force) for p in (0.0, 1e-9, 3e-9)]
+    rows = [one(loading_work=1e-9, plastic_work=p, force=force) for p in (0.0, 1e-9, 3e-9)]
     unseen = unseen_yield(Falling(), waves, rows)
     assert unseen == approx(np.array([1.0, 1 / 4, 1 / 16]) * 0.1 * 0.4, rel=1e-12)
     work = np.geomspace(1e-9, 1e-6, 3)
@@ -183,20 +184,23 @@ def test_a_rough_contact_just_below_its_yield_pressure_has_no_vanishing_error(ca
     elastic, _ = run(just.replace("JUST", "1e15"), tmp_path / "elastic")
     contact = parse_case(just.replace("JUST", "1e15")).contact(tmp_path)
     (state,) = loading_path(contact, [elastic[-1]["max_indentation_m"]])
-    rows, _ = run(just.replace("JUST", str(1.02 * state.pressure.max())), tmp_path / "just")
+    text = just.replace("JUST", str(1.02 * state.pressure.max()))
+    out = ResultsFolder(tmp_path / "just")
+    run_realisations(parse_case(text), text, tmp_path, out)
+    rows, points = out.rows, out.curve.points
     assert rows[-1]["restitution"] == approx(1.0, rel=1e-9)
     case = parse_case(just.replace("JUST", str(1.02 * state.pressure.max())))
     depths = [each["max_indentation_m"] for each in rows]
     fine = curve_of(case.refined(4).contact(tmp_path), depths, "path")
     missed = 1 - fine.at(np.array([rows[-1]["loading_work_J"]]))[0]
     waves = Band.of(case.surface(tmp_path))
-    unseen = unseen_yield(Companions(case, tmp_path, depths), waves, rows)
+    unseen = unseen_yield(Companions(case, tmp_path, depths), waves, points)
     assert 1e-4 < missed < unseen[-1] < rows[-1]["discretisation_error"]
 
 
 def test_what_no_companion_tells_is_not_known():
     work = np.geomspace(1e-9, 1e-6, 3)
-    assert np.isnan(grid_error(np.full(3, math.nan), NONE[:3], work, [row()] * 3, 0.0)[0]).all()
+    assert np.isnan(grid_error(np.full(3, math.nan), NONE[:3], work, [one()] * 3, 0.0)[0]).all()
     known, unknown = [0.5, 0.6, 0.7], [math.nan] * 3
     assert np.isnan(scatter(np.array([known, unknown]), work)).all()
     assert np.isnan(scatter(np.array([unknown, known, known]), work)).all()
@@ -243,16 +247,16 @@ def test_the_surface_error_covers_the_mean_of_all_surfaces(surfaces):
 def test_a_curve_is_not_extrapolated():
     work = np.array([1.0, 10.0, 100.0])
     for first in (0.9, 1.0):  # an impact without loss changes the interpolation
-        curve = Curve(work, work * np.array([first, 0.7, 0.6]) ** 2, NONE[:3])
+        curve = WorkCurve(work, work * np.array([first, 0.7, 0.6]) ** 2, NONE[:3])
         found = curve.at(np.array([0.1, 1.0, 10.0, 1e4]))
         assert found == approx([first, first, 0.7, 0.6], rel=1e-12)
-    assert np.isnan(Curve(*np.empty((3, 0))).at(np.array([1.0]))).all()
+    assert np.isnan(WorkCurve(*np.empty((3, 0))).at(np.array([1.0]))).all()
 
 
 def test_between_impacts_that_stick_and_that_do_not_a_constant_loss_is_interpolated():
     """COR is 0 up to a work of 2 J, the energy that adhesion dissipates, and then rises steeply."""
     work = np.array([1.0, 10.0, 100.0])
-    curve = Curve(work, work - 2.0, NONE[: work.size])
+    curve = WorkCurve(work, work - 2.0, NONE[: work.size])
     between = np.array([1.9, 2.1, 4.0, 50.0])
     assert curve.at(between)[0] == 0
     assert curve.at(between)[1:] == approx(np.sqrt(1 - 2 / between[1:]), rel=1e-9)
@@ -260,7 +264,7 @@ def test_between_impacts_that_stick_and_that_do_not_a_constant_loss_is_interpola
 
 def test_resolved_contacts_keep_a_small_error_of_the_grid():
     """The floor is 10 % of the error of 90 % of contacts with such patches: 0.05 at 30 nodes."""
-    error, _ = widened_error(0.0, 0.0, 0.0, row(median_patch_nodes=30.0), 0.0)
+    error, _ = widened_error(0.0, 0.0, 0.0, one(median_patch_nodes=30.0), 0.0)
     assert error == approx(0.1 * 0.05, rel=1e-9)
 
 
@@ -277,7 +281,7 @@ def test_the_changes_by_materials_add_as_squares(case_text, tmp_path, monkeypatc
 
 def test_grids_that_agree_without_resolving_have_an_error():
     """Both grids give COR = 1.0000, but cells 16 times finer give 0.979."""
-    error, _ = widened_error(0.0, 0.0, 0.0, row(median_patch_nodes=1, restitution=1.0), 0.0)
+    error, _ = widened_error(0.0, 0.0, 0.0, one(median_patch_nodes=1, restitution=1.0), 0.0)
     assert error > 0.4
 
 

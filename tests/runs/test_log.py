@@ -4,6 +4,8 @@ from contextlib import nullcontext
 
 import pytest
 
+from points import point
+from restitution.curve.curve import Curve
 from restitution.errors import DomainError
 from restitution.results.writer import ResultsFolder
 from restitution.runs.log import RunLog
@@ -50,7 +52,7 @@ def test_one_of_several_runs_tells_what_is_foreseen_of_it(tmp_path):
     log = RunLog(progress=told.append, tell=told.append)
     log.progress_of("realisation 2 of 3")("1 of 4 depths")
     log.warnings_of(part)("foreseen")
-    part.rows.append({})
+    part.curve = Curve((point(),))
     log.warnings_of(part)("found")
     assert told == ["realisation 2 of 3, 1 of 4 depths", "foreseen"]
     assert log.warnings == ["foreseen"]

@@ -1,5 +1,6 @@
 import numpy as np
 
+from points import point
 from restitution import Body, Contact, Grid, Pair, smooth
 from restitution.runs.smooth import smooth_curve
 from restitution.theory import FirstYield, Hertz
@@ -13,7 +14,7 @@ GRID = Grid((8, 8), (1e-6, 1e-6))
 
 
 def rows(*depths, work=1e-12):
-    return [{"max_indentation_m": depth, "loading_work_J": work} for depth in depths]
+    return [point(indentation=depth, loading_work=work) for depth in depths]
 
 
 def values(*arguments, **options):

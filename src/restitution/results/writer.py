@@ -145,7 +145,8 @@ class ResultsFolder:
 
         If `results.nc` cannot be written, `summary.json` records the failure. Raises `OutputError`.
         """
-        self.dataset, self.summary = with_coordinates(dataset), summary
+        self.dataset = with_coordinates(dataset)
+        self.summary = json.loads(json.dumps(summary))  # as it will be read
         if self.path is None:
             return
         maps = {"height", "pressure", "plastic_displacement"} & set(dataset)

@@ -143,11 +143,13 @@ def run_convergence(
                 if part.curve.points:
                     runs[factor] = _Grid(later, part)
         if case.total_error and runs:
-            spread |= _spread(case.refined(max(runs)), folder, runs[max(runs)].points, log)
+            spread |= _spread_of(case.refined(max(runs)), folder, runs[max(runs)].points, log)
     return log.summary
 
 
-def _spread(case: Case, folder: Path, points: Sequence[Point], log: RunLog) -> dict[int, _Spread]:
+def _spread_of(
+    case: Case, folder: Path, points: Sequence[Point], log: RunLog
+) -> dict[int, _Spread]:
     """Errors of the points of the finest grid due to surface and materials, by their number.
 
     Points whose loading work is not positive are left out.
