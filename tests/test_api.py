@@ -134,10 +134,10 @@ def test_the_package_offers_its_version_and_theory():
         assert getattr(rs, name) is not None
 
 
-def test_results_in_memory_are_those_of_a_folder(case_text, tmp_path):
-    case = tomllib.loads(case_text)
+def test_results_in_memory_are_those_of_a_folder(case, tmp_path):
     stored, kept = rs.run(case, out=tmp_path / "out"), rs.run(case)
-    assert kept.curve == stored.curve == rs.open_results(tmp_path / "out").curve
+    opened = rs.open_results(tmp_path / "out")
+    assert str(kept.curve.rows) == str(stored.curve.rows) == str(opened.curve.rows)
     assert kept.folder is None
     assert kept.curve.restitution.tolist() == stored.dataset["restitution"].values.tolist()
     same = [name for name in kept.summary if "seconds" not in name]
@@ -150,10 +150,10 @@ def test_results_in_memory_are_those_of_a_folder(case_text, tmp_path):
         _ = kept.maps
 
 
-def test_an_ensemble_in_memory_has_its_means(case_text, tmp_path):
-    case = tomllib.loads(case_text.replace("seed = 1", "seed = 1\nrealisations = 2"))
+def test_an_ensemble_in_memory_has_its_means(case, tmp_path):
+    case = case | {"roughness": case["roughness"] | {"realisations": 2}}
     stored, kept = rs.run(case, out=tmp_path / "out"), rs.run(case)
-    assert kept.curve == stored.curve
+    assert str(kept.curve.rows) == str(stored.curve.rows)
     assert kept.curve.realisations.tolist() == [2] * 4
     assert kept.surfaces == 2
 
@@ -163,7 +163,7 @@ def test_a_curve_is_interpolated_and_not_extrapolated(results):
     assert curve.at(velocities).tolist() == approx(curve.restitution.tolist())
     between = curve.at(np.sqrt(velocities[0] * velocities[1]))
     assert min(curve.restitution[:2]) <= between <= max(curve.restitution[:2])
-    assert curve.errors["total_error"].tolist() == curve.total_error.tolist()
+    assert curve.errors["model_error"].tolist() == curve.model_error.tolist()
     with pytest.raises(DomainError, match="nothing is extrapolated"):
         curve.at(2 * velocities[-1])
     with pytest.raises(AttributeError):
