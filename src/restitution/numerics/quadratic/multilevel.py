@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from restitution.numerics.box import Box, bounding_box, shape_of, union, widen
 from restitution.numerics.convolution.operators import Convolution, SpectralFilter
+from restitution.numerics.expressions import dot
 from restitution.numerics.quadratic.fused_ops import Bound
 from restitution.numerics.quadratic.grid_transfer import Fields, nested, prolonged
 from restitution.numerics.quadratic.local_mean import damp_local_mean
@@ -26,7 +27,6 @@ from restitution.numerics.quadratic.minimise import (
     minimise_quadratic,
     violation,
 )
-from restitution.numerics.reductions import dot
 
 Mask = NDArray[np.bool_]
 
