@@ -18,7 +18,7 @@ from restitution.contact.detachment import (
 )
 from restitution.contact.influence import half_space
 from restitution.contact.separation import separate, separation_of
-from restitution.numerics.diffusion import diffuse
+from restitution.numerics.expressions import diffuse
 from restitution.theory import Kendall
 from tolerance import approx
 

@@ -7,8 +7,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 from restitution.numerics import kernels
-from restitution.numerics.diffusion import diffuse
-from restitution.numerics.multipoles import multipoles
+from restitution.numerics.expressions import diffuse, max_magnitude, multipoles
 from restitution.numerics.quadratic import fused_ops
 from restitution.numerics.quadratic.fused_ops import (
     as_rows,
@@ -21,7 +20,6 @@ from restitution.numerics.quadratic.fused_ops import (
 )
 from restitution.numerics.quadratic.grid_transfer import prolong, restrict
 from restitution.numerics.quadratic.local_mean import local_sums, subtract_local_mean
-from restitution.numerics.reductions import max_magnitude
 from tolerance import approx
 
 pytest.importorskip("restitution.numerics.loops", reason="built without a compiler")

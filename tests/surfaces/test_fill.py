@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from restitution.numerics.grid import Grid
-from restitution.surfaces.fill import fill_harmonically
+from restitution.surfaces.clean import fill_harmonically
 
 GRID = Grid((40, 30), (1e-7, 2e-7))
 X, Y = np.meshgrid(GRID.x, GRID.y, indexing="ij")

@@ -42,7 +42,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from restitution.numerics.diffusion import diffuse
+from restitution.numerics.expressions import diffuse
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]

@@ -26,7 +26,7 @@ from restitution.numerics.convolution.operators import (
     PeriodicConvolution,
     SpectralFilter,
 )
-from restitution.numerics.multipoles import multipoles
+from restitution.numerics.expressions import multipoles
 
 Array = NDArray[np.float64]
 Operator = TypeVar("Operator", FreeConvolution, PeriodicConvolution, SpectralFilter)

@@ -20,10 +20,7 @@ def shape_of(box: Box) -> tuple[int, int]:
 
 
 def bounding_box(mask: NDArray[np.bool_], within: Box | None = None) -> Box | None:
-    """Return the smallest box that contains every true node of `mask`; None if no node is true.
-
-    `mask` covers the box `within` of the grid; by default, it covers the whole grid.
-    """
+    """Smallest box with every true node of `mask`, which covers the box `within`; None if none."""
     rows = np.flatnonzero(mask.any(axis=1))
     if rows.size == 0:
         return None
@@ -43,7 +40,7 @@ def widen(box: Box, cells: int, nodes: tuple[int, int]) -> Box:
 
 
 def union(first: Box | None, second: Box | None) -> Box | None:
-    """Return the smallest box that contains both boxes; None stands for an empty box."""
+    """Smallest box that contains both boxes; None stands for an empty box."""
     if first is None or second is None:
         return second if first is None else first
     rows, columns = (
@@ -53,20 +50,17 @@ def union(first: Box | None, second: Box | None) -> Box | None:
     return rows, columns
 
 
-def reframe(values: NDArray[Scalar], box: Box, wanted: Box) -> NDArray[Scalar]:
-    """Convert `values`, an array on `box`, to an array on the box `wanted`.
-
-    Nodes outside `box` get the value zero. If the boxes are equal, the result is `values` itself.
-    """
-    if box == wanted:
+def reframe(values: NDArray[Scalar], box: Box, target: Box) -> NDArray[Scalar]:
+    """`values` on `box` as an array on `target`, zero elsewhere; not copied for equal boxes."""
+    if box == target:
         return values
-    framed: NDArray[Any] = np.zeros(shape_of(wanted), dtype=values.dtype)
+    framed: NDArray[Any] = np.zeros(shape_of(target), dtype=values.dtype)
     shared = [
         (max(have.start, want.start), min(have.stop, want.stop))
-        for have, want in zip(box, wanted, strict=True)
+        for have, want in zip(box, target, strict=True)
     ]
     if all(start < stop for start, stop in shared):
-        framed[_within(wanted, shared)] = values[_within(box, shared)]
+        framed[_within(target, shared)] = values[_within(box, shared)]
     return framed
 
 

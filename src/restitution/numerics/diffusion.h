@@ -1,4 +1,4 @@
-// Diffusion on a graph of nodes, in double precision; see diffusion.py.
+// Diffusion on a graph of nodes, in double precision; see expressions.py.
 
 inline void diffuse(Rows<const Index> neighbours, Rows<const double> weights, int steps,
                    Rows<double> sums) {

@@ -1,7 +1,4 @@
-"""Uniform rectangular grid.
-
-Arrays are indexed `[i, j]` along x and y. Their values belong to the cell centres ("nodes").
-"""
+"""Uniform rectangular grid; arrays are indexed `[i, j]` along x and y, values at cell centres."""
 
 from __future__ import annotations
 
@@ -23,8 +20,8 @@ from restitution.errors import CaseError, shown
 class Grid:
     """Uniform rectangular grid of cells.
 
-    The origin is the centre of cell (nx // 2, ny // 2). So the lowest point of a sphere at the
-    origin is a node for any grid size, and the nodes of grids with equal spacing coincide.
+    The origin is the centre of cell (nx // 2, ny // 2), so the nodes of grids with equal spacing
+    coincide.
 
     Args:
         nodes: Number of nodes (nx, ny), or one number for both axes.
@@ -87,20 +84,16 @@ def _sides(edges: tuple[float, float]) -> str:
 
 
 def _both(name: str, value: Any, wanted: str) -> tuple[Any, Any]:
-    """Return one value for x and one for y: the two items of `value`, or one number twice.
-
-    Any other `value` raises `CaseError`; the message states the expected input, `wanted`.
-    """
+    """The two items of `value`, or one number twice; else `CaseError` that asks for `wanted`."""
     along = (value, value) if isinstance(value, Real) else value
     try:
         first, second = along
     except (TypeError, ValueError):
         first = second = None
-    if not all(isinstance(one, Real) and not isinstance(one, bool) for one in (first, second)):
+    if not all(isinstance(edge, Real) and not isinstance(edge, bool) for edge in (first, second)):
         raise CaseError(f"{name}: give {wanted}, not {shown(value)}")
     return first, second
 
 
 def _centres(n: int, h: float) -> NDArray[np.float64]:
-    """Centres of `n` cells of width `h`, zero at index n // 2."""
     return np.asarray((np.arange(n) - n // 2) * h, dtype=np.float64)

@@ -1,15 +1,9 @@
 """Choose compiled kernels or NumPy expressions, and the instruction set of the kernels.
 
-Each time-critical operation is written twice: as a NumPy expression of whole arrays, which works on
-any device, and as a C++ loop (a compiled kernel) that computes the same result in one pass over
-memory. Tests compare the results of the two versions.
-
-The loops form the module `restitution.numerics.loops`. If this module was not compiled or cannot be
-loaded, the NumPy expressions are used. The expressions are several times slower than the loops.
-
-The environment variable RESTITUTION_KERNELS is read once. The values "avx512", "avx2" and "plain"
-select the kernels compiled for that instruction set; "numpy" selects the NumPy expressions. By
-default, the kernels with the widest vectors that the processor supports are used.
+Each time-critical operation is written twice, as a NumPy expression, which works on any device, and
+as a C++ loop of the same name in `restitution.numerics.loops`, several times as fast. Tests compare
+the two. RESTITUTION_KERNELS ("avx512", "avx2", "plain" or "numpy") is read once; by default, the
+widest vectors that the processor supports are used.
 """
 
 from __future__ import annotations
@@ -32,13 +26,7 @@ Result = TypeVar("Result")
 
 
 def _load() -> tuple[Any, str]:
-    """Return the compiled module and an empty text.
-
-    If no module is used, return None and a text that states the reason and a remedy.
-
-    Raises `CaseError` if RESTITUTION_KERNELS names unknown kernels or kernels that cannot be
-    loaded.
-    """
+    """Return the compiled module and an empty text, or None and why, with a remedy."""
     wanted = os.environ.get(VARIABLE, "")
     if wanted == "numpy":
         return None, f"{VARIABLE} is numpy; unset it"
@@ -71,11 +59,7 @@ def missing() -> str | None:
 
 
 def use_loop(expression: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
-    """Decorate the NumPy function `expression` to call the compiled loop of the same name.
-
-    The loop is called if `loop_takes` accepts the first argument. Otherwise, `expression` itself is
-    called.
-    """
+    """Decorate a NumPy expression to call the compiled loop if `loop_takes` its first argument."""
     if loops is None:
         return expression
     loop = getattr(loops, expression.__name__)

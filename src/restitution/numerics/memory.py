@@ -15,11 +15,7 @@ _GROUPS = Path("/sys/fs/cgroup")
 
 
 def available() -> float:
-    """Most memory that this process can use (bytes); infinite if the system reports no limit.
-
-    It is the smallest of three limits: the memory of the machine, the limit of the control groups
-    and the limit of the address space.
-    """
+    """Most memory that this process can use (bytes); infinite if the system reports no limit."""
     return min(_of_machine(), _of_control_groups(), _of_address_space())
 
 
@@ -64,8 +60,8 @@ def _of_control_groups(groups: str = "/proc/self/cgroup") -> float:
         group = root / path.lstrip("/")
         # In a container, `path` can be a path on the host. Then `group` does not exist here, and
         # the limit is read from a parent folder, at the latest from `root`.
-        folders = [each for each in (group, *group.parents) if each.is_relative_to(root)]
-        least = min(least, *(_limit(each / file) for each in folders))
+        folders = [path for path in (group, *group.parents) if path.is_relative_to(root)]
+        least = min(least, *(_limit(folder / file) for folder in folders))
     return least
 
 
@@ -80,8 +76,7 @@ def _limit(file: Path) -> float:
 def _of_address_space() -> float:
     """Memory (bytes) that the limit on the address space (`ulimit -v`) allows.
 
-    The limit also counts address ranges that are reserved but occupy no memory. The size of these
-    ranges is subtracted from the limit.
+    Address ranges that are reserved but occupy no memory count against this limit.
     """
     try:
         import resource

@@ -1,4 +1,4 @@
-// A multipole series on a grid, in double precision; see multipoles.py.
+// A multipole series on a grid, in double precision; see expressions.py.
 
 inline void multipoles(Rows<const double> x, Rows<const double> y, Rows<const double> moments,
                        Rows<double> out) {

@@ -12,8 +12,7 @@ from numpy.typing import ArrayLike
 def integrate_curve(x: ArrayLike, f: ArrayLike) -> float:
     """Integral of the monotone cubic interpolant (PCHIP) of the points (x, f).
 
-    `x` may increase or decrease. Unlike the trapezoidal rule, PCHIP is not biased on a convex
-    curve, and it never overshoots.
+    Unlike the trapezoidal rule, PCHIP is not biased on a convex curve, and it never overshoots.
     """
     from scipy.interpolate import PchipInterpolator
 
@@ -36,26 +35,20 @@ def integrate_adaptively(
     depth: int = 12,
     panels: int = 1,
 ) -> tuple[float, float]:
-    """Adaptive Simpson integral of `f` over [a, b], and an estimate of its error.
+    """Adaptive Simpson integral of `f` over [a, b], and an estimate of its error (Lyness 1969).
 
-    The method suits integrands that are expensive to evaluate and whose end values `f_a` and `f_b`
-    are known. Intervals are processed from left to right, so that `f` may use its previous result
-    as a first guess. `tolerance` is absolute. After `depth` bisections an interval is accepted even
-    if its error is too large. The total error is the sum of the errors of the intervals (Lyness
-    1969).
-
-    The error estimate compares two rules on the same interval. If the integrand is zero at all five
-    nodes of the interval but not between them, the estimate is wrongly zero. A larger number of
-    initial intervals (`panels`) reduces this risk, for example for an integrand that is zero up to
-    first yield.
+    For expensive integrands with known end values `f_a` and `f_b`. Intervals are processed from
+    left to right, so that `f` may start from its previous result. `tolerance` is absolute. After
+    `depth` bisections an interval is accepted even if its error is too large. More initial `panels`
+    help an integrand that is zero up to first yield, whose error estimate may be wrongly zero.
     """
     edges = [*(a + (b - a) * k / panels for k in range(panels)), b]
     value, error, left = 0.0, 0.0, f_a
     for low, high in itertools.pairwise(edges):
         middle = f(0.5 * (low + high))
         right = f_b if high is b else f(high)
-        part, its_error = _refine(f, low, high, left, middle, right, tolerance / panels, depth)
-        value, error, left = value + part, error + its_error, right
+        part, part_error = _refine(f, low, high, left, middle, right, tolerance / panels, depth)
+        value, error, left = value + part, error + part_error, right
     return value, error
 
 

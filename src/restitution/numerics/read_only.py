@@ -17,11 +17,7 @@ def freeze(values: NDArray[Scalar]) -> NDArray[Scalar]:
 
 
 def read_only(values: NDArray[Scalar]) -> NDArray[Scalar]:
-    """Return `values` as an array that cannot be written to.
-
-    If `values` and all arrays of which it is a view are already read-only, `values` itself is
-    returned. Otherwise the result is a copy, and `values` stays writeable for its owner.
-    """
+    """`values`, or a copy if it or an array of which it is a view can be written to."""
     owner: object = values
     while isinstance(owner, np.ndarray) and not owner.flags.writeable:
         owner = owner.base

@@ -2,20 +2,12 @@
 
     minimise  ½ uᵀK⁻¹u + Σ_i φ_i(u_i)
 
-K is symmetric positive definite and known only through its product with an array; K⁻¹ is never
-needed. The point is stored twice, as u and as p = K⁻¹u. The gradient is r = p + φ′, and the Hessian
-is K⁻¹ + diag(φ″).
-
-Each step of Newton's method is solved by conjugate gradients that stop at the boundary of a trust
-region or at negative curvature (Steihaug 1983, SIAM J. Numer. Anal. 20, 626–637). K is the
-preconditioner, so each direction is K s, where s is a sum of residuals. This s is stored: it is
-the product of K⁻¹ and the direction. So an iteration takes only one product with K. Apart from
-rounding errors, the energy falls in every accepted step. So the method descends from its start to
-a neighbouring minimum.
-
-If K maps constant arrays to zero (the option `zero_mean`), the minimum is sought among all u of
-mean zero. The mean of p then has no effect on u, and it is chosen so that the mean of the gradient
-is zero.
+K is symmetric positive definite and known only through its product with an array. The point is
+stored twice, as u and as p = K⁻¹u. The gradient is r = p + φ′, and the Hessian is K⁻¹ + diag(φ″).
+Newton steps are solved by conjugate gradients up to the boundary of a trust region or negative
+curvature (Steihaug 1983, SIAM J. Numer. Anal. 20, 626–637). With K as preconditioner, each
+direction is K s with a sum s of residuals, so K⁻¹ is never needed. The energy falls in every
+accepted step: the method descends from its start to a neighbouring minimum.
 """
 
 from __future__ import annotations
@@ -27,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from restitution.numerics.convolution.operators import Array, Convolution
-from restitution.numerics.reductions import dot
+from restitution.numerics.expressions import dot
 
 # Function of the unknowns u that returns the potential φ of each node, and its derivatives φ′ and
 # φ″.
@@ -50,9 +42,8 @@ _ROUNDING = 1e-13
 class LocalMinimum:
     """Final point of `minimise_locally`: u and p = K⁻¹u.
 
-    `residual` is the largest |r|/(|φ″| + 1/K₀₀), in the units of u. Here r is the gradient, φ″ the
-    second derivative of the potential of a node, and K₀₀ the diagonal of K. `steps` counts Newton
-    steps. `negative_curvature` is True if the method met a direction of negative curvature.
+    `residual` is the largest |r|/(|φ″| + 1/K₀₀), in the units of u, with the diagonal K₀₀ of K.
+    `steps` counts Newton steps. `negative_curvature` tells whether the method met such a direction.
     """
 
     p: Array
@@ -76,13 +67,11 @@ def minimise_locally(
 ) -> LocalMinimum:
     """Descend from (p, u) to a local minimum of ½ uᵀK⁻¹u + Σ φ(u), where `potential` returns φ.
 
-    `p` and `u` = K p are the start and are not changed. `length` is the change of u over which φ″
-    changes noticeably. The method starts without a trust region. Until it has one, `length` limits
-    the change of u along a direction of negative curvature.
-
-    `tolerance` limits `LocalMinimum.residual`. `zero_mean` states that K maps constant arrays to
-    zero and is positive definite for arrays of mean zero. If the method does not converge,
-    `converged` of the result is False; no exception is raised.
+    `p` and `u` = K p are not changed. `length` is the change of u over which φ″ changes noticeably;
+    it limits the first step along a direction of negative curvature. `tolerance` limits
+    `LocalMinimum.residual`. With `zero_mean`, K maps constant arrays to zero, the minimum is sought
+    among all u of mean zero, and the mean of p is chosen so that the gradient has mean zero. If the
+    method does not converge, `converged` of the result is False.
     """
     phi, slope, k = potential(u)
     energy = 0.5 * dot(p, u) + float(phi.sum())
@@ -130,14 +119,10 @@ def _newton_step(
 ) -> tuple[Array, Array, bool, bool]:
     """Solve (K⁻¹ + k) x = −r approximately, with the gradient r and k = φ″.
 
-    The step x is a change of the unknowns u. `limits` contains the radius of the trust region and a
-    length. The radius is measured in the norm (xᵀK⁻¹x)^½ and is infinite if there is no trust
-    region yet. The iteration stops at the edge of the trust region. If it meets a direction of
-    negative curvature, it follows this direction to the edge. If there is no trust region, it
-    follows the direction until the largest change of u along it equals the length, and then stops.
-
-    Returns x, K⁻¹x, whether one of the limits ended the step, and whether the iteration met a
-    direction of negative curvature.
+    `limits` are the radius of the trust region in the norm (xᵀK⁻¹x)^½, infinite if there is none
+    yet, and the largest change of u along a direction of negative curvature while there is none.
+    Return x, K⁻¹x, whether one of the limits ended the step, and whether a direction had negative
+    curvature.
     """
     radius, length = limits
     x, Sx, Hd, scaled = (np.zeros_like(r) for _ in range(4))

@@ -16,8 +16,7 @@ from restitution.arguments import typed
 from restitution.display import quantity
 from restitution.errors import SurfaceError, shown
 from restitution.numerics.grid import Grid
-from restitution.surfaces.clean import Range, crop
-from restitution.surfaces.fill import fill_harmonically
+from restitution.surfaces.clean import Range, crop, fill_harmonically
 from restitution.surfaces.reading.instrument_files import (
     INSTALL_READERS,
     NoReadersError,

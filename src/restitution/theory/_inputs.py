@@ -15,10 +15,7 @@ Values: TypeAlias = float | Array
 
 
 def positive(**quantities: Values) -> tuple[Array, ...]:
-    """Check that the named quantities are positive and finite; return them as float arrays.
-
-    The error message names the keyword, so pass each quantity under its public argument name.
-    """
+    """Return the named quantities as float arrays; `CaseError` unless positive and finite."""
     arrays = []
     for name, value in quantities.items():
         array = np.asarray(value, dtype=np.float64)
@@ -33,19 +30,17 @@ def positive(**quantities: Values) -> tuple[Array, ...]:
 
 
 def keep_positive(law: object, *names: str) -> None:
-    """Check that the named fields of a frozen `law` are positive; store them read-only."""
     for name in names:
         keep(law, name, *positive(**{name: getattr(law, name)}))
 
 
 def keep_between(law: object, name: str, low: Values, high: Values = np.inf) -> None:
-    """Check that a field of a frozen `law` is finite and within bounds; store a read-only array."""
     array = np.asarray(getattr(law, name), dtype=np.float64)
     bad = ~(np.isfinite(array) & (array >= low) & (array <= high))
     if bad.any():
-        found, least, most = (np.broadcast_to(x, bad.shape)[bad][0] for x in (array, low, high))
+        value, least, most = (np.broadcast_to(x, bad.shape)[bad][0] for x in (array, low, high))
         raise CaseError(
-            f"{name}: {found:g} is not a finite number from {least:g} to {most:g}; "
+            f"{name}: {value:g} is not a finite number from {least:g} to {most:g}; "
             f"give {name} in SI units, within that range"
         )
     keep(law, name, array)
@@ -60,7 +55,7 @@ class PositiveFields:
 
 
 def touching(value: Values) -> Array:
-    """Return `value` (indentation, force, radius or velocity) with negative values set to zero."""
+    """Return `value` with negative values set to zero, for separated spheres."""
     return scalar_or_array(np.maximum(np.asarray(value, dtype=np.float64), 0.0))
 
 

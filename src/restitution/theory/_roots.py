@@ -1,8 +1,6 @@
-"""Roots of increasing functions, for whole arrays at once.
+"""Roots of increasing functions, for whole arrays at once; each element has its own bracket.
 
-The method of T. R. Chandrupatla, Advances in Engineering Software 28 (1997) 145–149, uses inverse
-quadratic interpolation where this is safe and bisection elsewhere. Every element of an array has
-its own bracket.
+T. R. Chandrupatla, Advances in Engineering Software 28 (1997) 145–149.
 """
 
 from __future__ import annotations
@@ -21,11 +19,7 @@ _EXACT = 2 * np.finfo(float).eps  # relative width of a converged bracket
 
 
 def increasing_root(excess: Callable[[Array], Array], low: Values, high: Values) -> Array:
-    """Return the root of the increasing function `excess` between `low` and `high`.
-
-    If `excess` is already positive at `low`, the result is `low`; if it is still negative at
-    `high`, the result is `high`. NaN bounds give NaN.
-    """
+    """Root of the increasing function `excess`; the nearest bound if it lies outside the bounds."""
     low, high = (np.asarray(end, float) for end in np.broadcast_arrays(low, high))
     below, above = excess(low), excess(high)
     root = np.where(below >= 0, low, np.where(above <= 0, high, low + high + below + above))
@@ -33,8 +27,8 @@ def increasing_root(excess: Callable[[Array], Array], low: Values, high: Values)
     if inside.any():
         # The formulas divide by zero in elements that have converged; those values are not used.
         with np.errstate(all="ignore"):
-            found = _chandrupatla(excess, low, high, below, above, inside)
-        root = np.where(inside, found, root)
+            bracketed = _chandrupatla(excess, low, high, below, above, inside)
+        root = np.where(inside, bracketed, root)
     return root
 
 
@@ -46,10 +40,10 @@ def _chandrupatla(
     above: Array,
     inside: NDArray[np.bool_],
 ) -> Array:
-    """Return the roots of `excess` where the mask `inside` is true. Other elements are undefined.
+    """Roots of `excess` where the mask `inside` is true; other elements are undefined.
 
-    Point 1 (`x1`, `f1`) is the newest point and one end of the bracket. Point 2 is the other end.
-    Point 3 is the end of the previous bracket that point 1 has replaced.
+    Point 1 is the newest point and one end of the bracket, point 2 the other end, and point 3 the
+    end that point 1 has replaced.
     """
     x1, f1, x2, f2 = high, above, low, below
     root, share = np.full_like(x1, np.nan), np.full_like(x1, 0.5)
@@ -76,11 +70,7 @@ def _chandrupatla(
 
 
 def _interpolated(x1: Array, f1: Array, x2: Array, f2: Array, x3: Array, f3: Array) -> Array:
-    """Return the next trial as a fraction of the way from point 1 to point 2.
-
-    The fraction comes from inverse quadratic interpolation through points 1 to 3. It is ½
-    (bisection) where interpolation is not safe.
-    """
+    """Next trial, a fraction of the way from point 1 to 2: inverse quadratic or, if unsafe, ½."""
     xi, phi = (x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2)
     safe = (phi**2 < xi) & ((1 - phi) ** 2 < 1 - xi)
     quadratic = f1 / (f2 - f1) * f3 / (f2 - f3) + (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (

@@ -1,27 +1,4 @@
-"""Jackson & Green (2005): finite-element fit of an elastic, perfectly plastic sphere on a flat.
-
-R. L. Jackson, I. Green, J. Tribology 127 (2005) 343–354, doi 10.1115/1.1866166. E* is the contact
-modulus (their E′), Y the yield strength of a tensile test (their S_y), ν Poisson's ratio, ω the
-indentation and ω* = ω/ω_c. The force P and the contact area A = πa² are:
-
-    C = 1.295 exp(0.736 ν),  ω_c = (πCY/2E*)² R*,  P_c = 4/3 (R*/E*)² (πCY/2)³,  A_c = πR*ω_c
-    ω* ≤ 1.9    P/P_c = ω*^{3/2},  A/A_c = ω* (Hertz). Yield begins below the surface at ω* = 1
-    ω* > 1.9    P/P_c = exp(−ω*^{5/12}/4) ω*^{3/2} + 4H_G/(CY) [1 − exp(−ω*^{5/9}/25)] ω*
-                A/A_c = ω* (ω*/1.9)^B,  B = 0.14 exp(23 Y/E*)
-                H_G/Y = 2.84 [1 − exp(−0.82 (a/R*)^{−0.7})]
-
-H_G is the mean pressure of fully plastic flow. The index c marks values at first yield, where the
-peak pressure is CY; ω_c is `FirstYield.indentation` with p_y = CY.
-
-The fit covers only loading against a rigid frictionless flat. Its data are finite-element results
-for five steel-like materials (Y/E* from 0.001 to 0.007, ν = 0.32; von Mises, no hardening) up to
-a/R* = 0.412. The force deviates from these results by 1 % on average and by at most 3.5 %. The area
-deviates by 1.3 % on average and by at most 4.3 %. Outside these ranges the fit extrapolates. At
-ω* = 1.9 the forces of the two branches agree within 0.1 % for ν = 0.32. For other values of ν the
-force jumps at ω* = 1.9: by +7.5 % for ν = 0, +1.5 % for ν = 0.25 and −3.4 % for ν = 0.5. For two
-deformable bodies use Y and ν of the body with the smaller CY.
-Units, shapes and errors are those of `restitution.theory`.
-"""
+"""Jackson & Green (2005): finite-element fit of an elastic, perfectly plastic sphere on a flat."""
 
 from __future__ import annotations
 
@@ -40,22 +17,26 @@ TRANSITION = 1.9
 
 @dataclass(frozen=True, eq=False)
 class JacksonGreen:
-    """Fit of the first loading of an elastic, perfectly plastic sphere against a rigid flat.
+    """First loading of an elastic, perfectly plastic sphere against a rigid frictionless flat.
 
-    The fields and arguments may be arrays and broadcast (see `restitution.theory`).
+    With ω* = δ/δ_y of `FirstYield` at the peak pressure CY, the force P and contact area A are
+    Hertz's up to ω* = 1.9; beyond it
+
+        P/P_c = exp(−ω*^{5/12}/4) ω*^{3/2} + 4H_G/(CY) [1 − exp(−ω*^{5/9}/25)] ω*
+        A/A_c = ω* (ω*/1.9)^B,  B = 0.14 exp(23 Y/E*),  H_G/Y = 2.84 [1 − exp(−0.82 (a/R*)^{−0.7})]
+
+    Fitted for Y/E* from 0.001 to 0.007, ν = 0.32 and a/R* up to 0.412, to at most 3.5 % (force) and
+    4.3 % (area). At ω* = 1.9 the force jumps: by +7.5 % for ν = 0, +1.5 % for ν = 0.25, −3.4 % for
+    ν = 0.5. For two deformable bodies use Y and ν of the body with the smaller CY.
 
     Attributes:
         radius: Reduced radius R* (m).
         contact_modulus: Contact modulus E* (Pa).
         yield_strength: Yield strength Y of a tensile test (Pa).
-        poissons_ratio: Poisson's ratio ν (dimensionless).
-
-    Raises:
-        CaseError: A field is not positive and finite, or Poisson's ratio is outside the range
-            −1 < ν ≤ ½.
+        poissons_ratio: Poisson's ratio ν (dimensionless), −1 < ν ≤ ½.
 
     Source:
-        R. L. Jackson, I. Green, J. Tribology 127 (2005) 343–354.
+        R. L. Jackson, I. Green, J. Tribology 127 (2005) 343–354, doi 10.1115/1.1866166.
     """
 
     radius: Values
@@ -80,56 +61,23 @@ class JacksonGreen:
         return FirstYield(self.radius, self.contact_modulus, p_c)
 
     def contact_area(self, indentation: Values) -> Array:
-        """Contact area on first loading.
-
-        Args:
-            indentation: Approach δ of the spheres (m).
-
-        Returns:
-            Contact area A (m²).
-        """
+        """Contact area A (m²) on first loading."""
         B = 0.14 * np.exp(23 * self.yield_strength / self.contact_modulus)
         deep = np.maximum(self._normalised(indentation), TRANSITION)
         return self.elastic.contact_area(indentation) * (deep / TRANSITION) ** B
 
     def contact_radius(self, indentation: Values) -> Array:
-        """Contact radius on first loading.
-
-        The fit is based on finite-element results with contact radii up to 0.412 R*.
-
-        Args:
-            indentation: Approach δ of the spheres (m).
-
-        Returns:
-            Contact radius a (m).
-        """
+        """Contact radius a (m) on first loading."""
         return (self.contact_area(indentation) / np.pi) ** 0.5
 
     def hardness(self, contact_radius: Values) -> Array:
-        """Mean contact pressure of fully plastic flow.
-
-        This pressure is 2.84 times the yield strength in the limit of small contacts. It decreases
-        as the contact radius grows.
-
-        Args:
-            contact_radius: Contact radius a (m).
-
-        Returns:
-            Mean pressure H_G (Pa).
-        """
+        """Mean pressure H_G (Pa) of fully plastic flow."""
         with np.errstate(divide="ignore"):  # a = 0 gives exp(−∞) = 0
             share = -np.expm1(-0.82 * (touching(contact_radius) / self.radius) ** -0.7)
         return scalar_or_array(2.84 * self.yield_strength * share)
 
     def loading_force(self, indentation: Values) -> Array:
-        """Normal force on first loading.
-
-        Args:
-            indentation: Approach δ of the spheres (m).
-
-        Returns:
-            Normal force P (N).
-        """
+        """Normal force P (N) on first loading."""
         w, first = self._normalised(indentation), self.first_yield
         deep = np.maximum(w, TRANSITION)
         H_G = self.hardness(self.contact_radius(deep * first.indentation))
@@ -140,5 +88,4 @@ class JacksonGreen:
         return scalar_or_array(first.force * np.where(w <= TRANSITION, w**1.5, fit))
 
     def _normalised(self, indentation: Values) -> Array:
-        """Indentation divided by the indentation at first yield; zero for separated bodies."""
         return touching(indentation) / self.first_yield.indentation

@@ -1,24 +1,4 @@
-"""Maugis (1992): elastic spheres with a constant attraction of finite range (Dugdale).
-
-D. Maugis, J. Colloid Interface Sci. 150 (1992) 243–269; K. L. Johnson, J. A. Greenwood, J. Colloid
-Interface Sci. 192 (1997) 326–333. The attraction σ₀ acts in the ring a < r < c around the contact
-area of radius a. In this ring the gap is below w/σ₀, where w is the work of adhesion. The
-transition parameter is λ = 2σ₀ (R*/(πwK²))^{1/3} with K = 4/3 E*. The dimensionless contact
-radius, force and outer radius of the ring are
-
-    ā = a (K/(πwR*²))^{1/3},   F̄ = F/(πwR*),   m = c/a.
-
-At a contact radius ā, the first equation below gives m and the second gives the force F̄:
-
-    1 = λā²/2 [(m² − 1)^½ + (m² − 2) arcsec m] + 4λ²ā/3 [(m² − 1)^½ arcsec m − m + 1]
-    F̄ = ā³ − λā² [(m² − 1)^½ + m² arcsec m]
-
-The pull-off force goes from 2πwR* (λ → 0, rigid spheres) to 3/2 πwR* (λ → ∞, JKR). The relation
-between λ and the Tabor parameter µ depends on the choice of σ₀. If σ₀ is the largest traction of
-the Lennard-Jones law (1.03 w/z₀ with the equilibrium separation z₀), λ = 1.16 µ (Johnson and
-Greenwood). If σ₀ is `LennardJones.dugdale_traction`, λ = 0.62 µ.
-Units, shapes and errors are those of `restitution.theory`.
-"""
+"""Maugis (1992): elastic spheres with a constant attraction of finite range (Dugdale)."""
 
 from __future__ import annotations
 
@@ -38,9 +18,17 @@ _SECTIONS = 60  # number of steps of the golden-section search for the pull-off 
 
 @dataclass(frozen=True, eq=False)
 class MaugisDugdale(PositiveFields):
-    """Elastic spheres with a constant attraction of finite range (Dugdale).
+    """Elastic spheres with a constant attraction σ₀ where the gap is below w/σ₀.
 
-    The fields may be arrays and broadcast (see `restitution.theory`).
+    With λ = 2σ₀ (R*/(πwK²))^{1/3}, K = 4/3 E*, ā = a (K/(πwR*²))^{1/3}, F̄ = F/(πwR*) and the outer
+    radius ma of the attracting ring,
+
+        1 = λā²/2 [(m² − 1)^½ + (m² − 2) arcsec m] + 4λ²ā/3 [(m² − 1)^½ arcsec m − m + 1]
+        F̄ = ā³ − λā² [(m² − 1)^½ + m² arcsec m]
+
+    The pull-off force goes from 2πwR* (λ → 0, rigid spheres) to 3/2 πwR* (λ → ∞, JKR). With the
+    Tabor parameter µ, λ = 1.16 µ for `LennardJones.largest_traction`, 0.62 µ for its
+    `dugdale_traction`.
 
     Attributes:
         radius: Reduced radius R* (m).
@@ -48,11 +36,9 @@ class MaugisDugdale(PositiveFields):
         work_of_adhesion: Work of adhesion w (J/m²).
         traction: Attraction σ₀ per area (Pa).
 
-    Raises:
-        CaseError: A field is not positive and finite.
-
     Source:
-        D. Maugis, J. Colloid Interface Sci. 150 (1992) 243–269.
+        D. Maugis, J. Colloid Interface Sci. 150 (1992) 243–269; K. L. Johnson, J. A. Greenwood, J.
+        Colloid Interface Sci. 192 (1997) 326–333.
     """
 
     radius: Values
@@ -62,19 +48,12 @@ class MaugisDugdale(PositiveFields):
 
     @property
     def transition_parameter(self) -> Array:
-        """Maugis' transition parameter λ = 2σ₀ (R*/(πwK²))^{1/3} (dimensionless), K = 4/3 E*."""
+        """Maugis' transition parameter λ (dimensionless)."""
         w, K = self.work_of_adhesion, 4 / 3 * np.asarray(self.contact_modulus)
         return scalar_or_array(2 * self.traction * np.cbrt(self.radius / (np.pi * w * K**2)))
 
     def force_at_contact_radius(self, contact_radius: Values) -> Array:
-        """Normal force at a contact radius, on the stable and the unstable branch.
-
-        Args:
-            contact_radius: Radius a of the area in contact (m), positive.
-
-        Returns:
-            Normal force F (N), positive in compression.
-        """
+        """Normal force F (N), on the stable and the unstable branch."""
         w, K = self.work_of_adhesion, 4 / 3 * np.asarray(self.contact_modulus)
         a = np.asarray(contact_radius) * np.cbrt(K / (np.pi * w * np.square(self.radius)))
         unit = np.pi * w * self.radius
@@ -112,10 +91,7 @@ def _force(a: Array, parameter: Array) -> Array:
 
 
 def _ring(log_width: Array) -> tuple[Array, Array, Array]:
-    """Return (m² − 1)^½, arcsec m and m for `log_width` = ln(m − 1).
-
-    m is the outer radius of the attracting ring divided by the contact radius.
-    """
+    """Return (m² − 1)^½, arcsec m and m for `log_width` = ln(m − 1)."""
     width = np.exp(log_width)
     root = np.sqrt(width * (2 + width))
     return root, np.arctan(root), 1 + width

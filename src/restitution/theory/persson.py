@@ -1,20 +1,4 @@
-"""Persson (2001): contact area of nominally flat elastic bodies with random roughness.
-
-B. N. J. Persson, J. Chem. Phys. 115 (2001) 3840–3861, doi 10.1063/1.1388626. The distribution of
-the contact pressure obeys a diffusion equation in which the magnification acts as time. The
-solution gives the relative contact area
-
-    A/A₀ = erf(√2 p/(E* h′)),
-
-with the nominal pressure p and the rms slope h′. At low pressure A/A₀ = κ p/(E* h′) with
-κ = √(8/π) = 1.60. The theory of Bush, Gibson and Thomas (1975, Wear 35, 87–111), which sums over
-asperities, gives κ = √(2π) = 2.51 in the limit of zero pressure. Numerical solutions lie between
-these values, with κ slightly above 2 (Prodanov, Dapp and Müser 2014, Tribol. Lett. 53, 433–448).
-
-Valid for elastic contact without adhesion and friction, for small slopes and for roughness that
-spans many wavelengths.
-Units, shapes and errors are those of `restitution.theory`.
-"""
+"""Persson (2001): contact area of nominally flat elastic bodies with random roughness."""
 
 from __future__ import annotations
 
@@ -30,48 +14,37 @@ _erf = np.vectorize(math.erf, otypes=[np.float64])
 
 @dataclass(frozen=True, eq=False)
 class Persson(PositiveFields):
-    """Contact of nominally flat elastic bodies with random roughness.
+    """Nominally flat elastic bodies with random roughness: A/A₀ = erf(√2 p/(E* h′)).
 
-    The fields and arguments may be arrays and broadcast (see `restitution.theory`).
+    At low pressure A/A₀ = κ p/(E* h′) with κ = √(8/π) = 1.60; numerical solutions have κ slightly
+    above 2 (Prodanov, Dapp and Müser 2014, Tribol. Lett. 53, 433–448). Valid without adhesion and
+    friction, for small slopes and roughness that spans many wavelengths.
 
     Attributes:
         rms_slope: Root mean square slope h′ of the composite roughness (dimensionless).
         contact_modulus: Contact modulus E* (Pa).
 
-    Raises:
-        CaseError: A field is not positive and finite.
-
     Source:
-        B. N. J. Persson, J. Chem. Phys. 115 (2001) 3840–3861.
+        B. N. J. Persson, J. Chem. Phys. 115 (2001) 3840–3861, doi 10.1063/1.1388626.
     """
 
     rms_slope: Values
     contact_modulus: Values
 
     def relative_area(self, pressure: Values) -> Array:
-        """Ratio of the real contact area to the nominal area.
-
-        Args:
-            pressure: Nominal pressure p (Pa).
-
-        Returns:
-            Relative area erf(√2 p/(E* h′)) (dimensionless).
-        """
+        """Ratio of the real contact area to the nominal area (dimensionless)."""
         reduced = touching(pressure) / (self.contact_modulus * self.rms_slope)
         return scalar_or_array(_erf(math.sqrt(2) * reduced))
 
     def pressure_density(self, local: Values, pressure: Values) -> Array:
         """Distribution of the contact pressure, as a fraction of the nominal area per pressure.
 
-        The diffusion equation has the solution exp(−(p − p₀)²/2s²) − exp(−(p + p₀)²/2s²), divided
-        by s √(2π), with s = E* h′/2. Its integral over p is the relative area.
-
         Args:
             local: Contact pressure p (Pa), positive.
             pressure: Nominal pressure p₀ (Pa).
 
         Returns:
-            Density (1/Pa, SI).
+            Density [exp(−(p − p₀)²/2s²) − exp(−(p + p₀)²/2s²)]/(s √(2π)) (1/Pa, SI), s = E* h′/2.
         """
         p, p_0 = np.asarray(local, dtype=float), np.asarray(touching(pressure), dtype=float)
         s = 0.5 * np.asarray(self.contact_modulus) * np.asarray(self.rms_slope)

@@ -1,17 +1,4 @@
-"""First yield of a Hertz contact: the peak pressure reaches the yield pressure p_y.
-
-`yield_pressure` p_y is a contact pressure, not the yield strength Y of a tensile test: p_y ≈ 1.6 Y
-at first yield below the surface, and p_y ≈ 2.8–3 Y (the hardness) for fully plastic flow (Johnson
-1985, sections 6.1 and 6.3). At first yield the peak pressure p₀ = 2E*a/(πR*), with a² = R*δ,
-equals p_y. With the elastic energy W of a Hertz contact, the indentation, the force and the impact
-velocity at first yield are:
-
-    δ_y = (πp_y/2E*)² R*,   F_y = π³R*²p_y³/(6E*²),   ½ m* V_y² = W(δ_y) = ⅖ F_y δ_y.
-
-These relations are exact within Hertz theory, which requires δ_y ≪ R* and so p_y ≪ E*. They neglect
-adhesion.
-Units, shapes and errors are those of `restitution.theory`.
-"""
+"""First yield of a Hertz contact: the peak pressure reaches the yield pressure p_y."""
 
 from __future__ import annotations
 
@@ -31,21 +18,16 @@ _EXP = np.vectorize(math.exp, otypes=[np.float64])  # same result on every proce
 
 @dataclass(frozen=True, eq=False)
 class FirstYield(PositiveFields):
-    """First yield of a Hertz contact, where its peak pressure reaches the yield pressure.
-
-    The fields and arguments may be arrays and broadcast (see `restitution.theory`).
+    """First yield of a Hertz contact; exact within Hertz theory, which requires p_y ≪ E*.
 
     Attributes:
         radius: Reduced radius R* (m).
         contact_modulus: Contact modulus E* (Pa).
-        yield_pressure: Contact pressure p_y at yield (Pa), not the yield strength of a tensile
-            test.
-
-    Raises:
-        CaseError: A field is not positive and finite.
+        yield_pressure: Contact pressure p_y at yield (Pa), not the yield strength Y of a tensile
+            test: about 1.6 Y at first yield below the surface, 2.8–3 Y for fully plastic flow.
 
     Source:
-        K. L. Johnson, *Contact Mechanics* (1985), sections 4.2 and 6.1.
+        K. L. Johnson, *Contact Mechanics* (1985), sections 4.2, 6.1 and 6.3.
     """
 
     radius: Values
@@ -65,21 +47,7 @@ class FirstYield(PositiveFields):
         return scalar_or_array(np.pi**3 / 6 * (R / E_star) ** 2 * p_y**3)
 
     def velocity(self, mass: Values) -> Array:
-        """Largest relative normal velocity at which an impact stays elastic.
-
-        Equating ½ m* V_y² with the elastic energy of the Hertz contact at first yield gives
-        V_y = (π⁵/30)^½ (p_y⁵R*³/(E*⁴m*))^½. Thornton & Ning (1998) round the coefficient (π⁵/30)^½
-        to 3.194; the exact value is used here.
-
-        Args:
-            mass: Reduced mass m* (kg).
-
-        Returns:
-            Yield velocity V_y (m/s).
-
-        Raises:
-            CaseError: `mass` is not positive and finite.
-        """
+        """Largest velocity V_y = (π⁵/30)^½ (p_y⁵R*³/(E*⁴m*))^½ (m/s) of an elastic impact."""
         R, E_star, p_y = self.radius, self.contact_modulus, self.yield_pressure
         (m,) = positive(mass=mass)
         return _COEFFICIENT * (p_y / E_star) ** 2 * (p_y * R**3 / m) ** 0.5
@@ -88,8 +56,7 @@ class FirstYield(PositiveFields):
 def yield_coefficient(poissons_ratio: Values) -> Array:
     """Ratio C = 1.295 exp(0.736 ν) of the peak Hertz pressure at first yield to the yield strength.
 
-    C is a fit to the largest von Mises stress below a Hertz contact, accurate within ½ % for
-    0 ≤ ν ≤ ½. C = 1.61 at ν = 0.3.
+    A fit to the largest von Mises stress, accurate within ½ % for 0 ≤ ν ≤ ½.
 
     Args:
         poissons_ratio: Poisson's ratio ν (dimensionless).

@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from restitution.contact.influence import half_space, inverse_half_space
 from restitution.numerics.convolution.operators import FreeConvolution
 from restitution.numerics.quadratic import multilevel
-from restitution.numerics.quadratic.grid_transfer import prolong, restrict
+from restitution.numerics.quadratic.grid_transfer import may_coarsen, prolong, restrict
 from restitution.numerics.quadratic.minimise import BoundedQuadratic, minimise_quadratic
 from restitution.numerics.quadratic.multilevel import (
     _USUAL_STIFFNESS,
@@ -195,7 +195,7 @@ def test_the_mean_stays_where_its_inverse_is_as_good_as_any(case):
 
 
 def guess(b, upper):
-    return multilevel._first_guess(system, b, upper, 1)
+    return multilevel._first_guess(system, b, upper)
 
 
 @pytest.mark.parametrize("rough", [0.0, 0.02])
@@ -281,8 +281,8 @@ def test_coarser_grids_have_wider_cells_and_larger_tolerances(monkeypatch):
     ],
 )
 def test_a_periodic_grid_is_coarsened_only_if_both_edges_are_even(shape, free, periodic):
-    assert multilevel.may_coarsen(shape, periodic=False) == free
-    assert multilevel.may_coarsen(shape, periodic=True) == periodic
+    assert may_coarsen(shape, periodic=False) == free
+    assert may_coarsen(shape, periodic=True) == periodic
 
 
 def test_the_first_guess_keeps_the_bound_of_each_node(monkeypatch):

@@ -17,10 +17,9 @@ class HasBytes(Protocol):
 
 
 class OperatorCache:
-    """Cache of at most `max_items` values with at most `max_bytes` in total.
+    """The most recently used values, at most `max_items` with at most `max_bytes` in total.
 
-    The least recently used values are dropped first. All methods are thread-safe. Values are
-    shared, so callers must not change them.
+    Values are shared between threads, so callers must not change them.
     """
 
     def __init__(self, max_bytes: int, max_items: int) -> None:
@@ -35,6 +34,7 @@ class OperatorCache:
 
     @max_bytes.setter
     def max_bytes(self, limit: int) -> None:
+        """Largest total size of all values (bytes). Setting a lower limit drops values."""
         with self._lock:
             self._max_bytes = limit
             self._shrink()

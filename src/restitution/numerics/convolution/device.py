@@ -1,11 +1,7 @@
 """Devices that store and convolve arrays: the CPU with compiled loops, or a GPU with CuPy.
 
-The solver accepts any arrays that follow NumPy's protocols (`__array_ufunc__`, NEP 13, and
-`__array_function__`, NEP 18), such as CuPy arrays. The protocols do not cover how arrays are
-created and convolved; a `Device` has methods for both. Solves run on the `current` device:
-
-    with on_device("gpu"):
-        state = solve(contact, 1e-6)
+The solver accepts any arrays that follow NumPy's protocols (NEP 13 and 18), such as CuPy arrays. A
+`Device` covers what they leave out: how arrays are created and convolved. Solves run on `current`.
 """
 
 from __future__ import annotations
@@ -48,10 +44,10 @@ class Device(Protocol):
         """Return the integers 0 … n − 1."""
 
     def even_spectrum(self, quadrant: Array) -> Array:
-        """One quadrant of the spectrum of a real array that is even along both axes.
+        """One quadrant of the spectrum of the even array of which `quadrant` is one.
 
-        `quadrant` is one quadrant of the array and may be overwritten. The spectrum is divided by
-        the number of values, so that the inverse transform needs no factor.
+        `quadrant` may be overwritten. The spectrum is divided by the number of values, so that the
+        inverse transform needs no factor.
         """
 
     def workspace(self, shape: tuple[int, int], periods: tuple[int, int]) -> Array:
@@ -68,18 +64,15 @@ class Device(Protocol):
     ) -> None:
         """Multiply the Fourier modes of `values` by `spectrum`, transform back, write to `out`.
 
-        `values` and `out` have shape (nx, ny). `values` is padded with zeros to the shape
-        `periods`. `spectrum` is one quadrant of a real, even spectrum: the transposed result of
-        `even_spectrum`. Its precision is the precision of the computation. `values` is divided by
-        `scale` before the transform, and the result is multiplied by `scale`.
+        `values` and `out` have shape (nx, ny); `values` is padded with zeros to the shape
+        `periods`. `spectrum` is the transposed result of `even_spectrum`, and its precision is that
+        of the computation. `values` is divided by `scale` before, and multiplied after the
+        transforms.
         """
 
 
 class _LibraryDevice:
-    """Device that uses an array library and a module of transforms.
-
-    `arrays` is the array library, such as NumPy. `fft` is the module, such as scipy.fft.
-    """
+    """Device of an array library, such as NumPy, and a module of transforms, such as scipy.fft."""
 
     def __init__(self, name: str, arrays: Any, fft: Any) -> None:
         self.name = name
@@ -183,7 +176,7 @@ _current: ContextVar[Device] = ContextVar("device", default=CPU)
 
 
 def current() -> Device:
-    """Return the device on which contacts are solved in the current context."""
+    """Device on which contacts are solved in the current context."""
     return _current.get()
 
 

@@ -1,15 +1,11 @@
 """Convolution with a real, even kernel by FFT: linear (zero-padded) or periodic.
 
-For nodes (i, j) of a grid of shape (nx, ny), the linear convolution is
-
     u[i, j] = Σ_kl  K[|i − k|, |j − l|] p[k, l].
 
 Along an axis of n nodes, zero padding to any size ≥ 2n − 1 makes the circular convolution equal to
-the linear one (Liu, Wang and Liu 2000, Wear 243, 101–111, "DC-FFT"). Kernel values at lags beyond
-n − 1 have no effect. The kernel is even along both axes. So its spectrum is real, and the DCT-I of
-one quadrant of the kernel gives one quadrant of the spectrum. Only this quadrant is stored.
-
-A periodic convolution needs no padding. Its kernel is given by its spectrum (`symbol`).
+the linear one (Liu, Wang and Liu 2000, Wear 243, 101–111, "DC-FFT"). The kernel is even along both
+axes, so its spectrum is real, and the DCT-I of one quadrant of the kernel gives the one quadrant of
+the spectrum that is stored. A periodic kernel is given by its spectrum (`symbol`).
 """
 
 from __future__ import annotations
@@ -24,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.numerics.convolution.device import CPU, Device, is_fast
-from restitution.numerics.reductions import max_magnitude
+from restitution.numerics.expressions import max_magnitude
 
 Array = NDArray[np.float64]
 # Function that returns the kernel at integer lags i and j, given as two arrays that are broadcast
@@ -38,18 +34,15 @@ Symbol = Callable[[Array, Array], Array]
 
 
 def fast_size(minimum: int) -> int:
-    """Return the smallest size ≥ `minimum` that has only the prime factors 2, 3, 5 and 7."""
+    """Smallest size ≥ `minimum` that has only the prime factors 2, 3, 5 and 7."""
     return next(filter(is_fast, count(minimum)))
 
 
 class _Spectral:
     """Multiplication of the Fourier modes of a zero-padded array by a real, even spectrum.
 
-    `count` is the number of multiplications so far.
-
-    Threads that share one operator compute one after the other, because a lock guards its
-    workspace. To compute in parallel, each thread uses its own copy from `with_own_workspace`. The
-    workspace is allocated on first use and kept.
+    `count` is the number of multiplications so far. A lock guards the workspace; threads compute in
+    parallel with copies from `with_own_workspace`.
     """
 
     def __init__(self, shape: tuple[int, int], periods: tuple[int, int], device: Device) -> None:
@@ -77,10 +70,7 @@ class _Spectral:
 
 
 class Convolution(_Spectral):
-    """Convolution of arrays with a kernel K.
-
-    `diagonal` is the kernel at lag (0, 0): the response of a node to its own value.
-    """
+    """Convolution with a kernel K; `diagonal` is the response of a node to its own value."""
 
     diagonal: float
     _spectrum: Array
@@ -96,10 +86,7 @@ class Convolution(_Spectral):
         return self._convolve(p, self._spectrum, out, 1.0)
 
     def single_precision(self, p: Array, out: Array | None = None) -> Array:
-        """Return K ∗ p computed in single precision.
-
-        Errors reach 9e-7 times the largest magnitude of the result.
-        """
+        """Return K ∗ p in single precision, with errors up to 9e-7 times its largest magnitude."""
         return self._convolve(p, self._single_spectrum, out, 1.0)
 
 
@@ -117,10 +104,7 @@ class FreeConvolution(Convolution):
 
 
 class PeriodicConvolution(Convolution):
-    """Circular convolution: the array is one period. The kernel is given by its spectrum.
-
-    The arguments are the spectrum `symbol`, the shape of the arrays and the device.
-    """
+    """Circular convolution; the array is one period, and the spectrum `symbol` gives the kernel."""
 
     def __init__(self, symbol: Symbol, shape: tuple[int, int], device: Device = CPU) -> None:
         super().__init__(shape, shape, device)
@@ -136,8 +120,8 @@ class PeriodicConvolution(Convolution):
 class SpectralFilter(_Spectral):
     """Multiplication by a real, even spectrum in Fourier space: a cheap approximate convolution.
 
-    Arrays are padded only to the next fast size of the transform, so the filter is periodic. The
-    filter computes in single precision, which is accurate enough for a preconditioner.
+    Arrays are padded only to the next fast size, so the filter is periodic. Single precision is
+    accurate enough for a preconditioner.
     """
 
     def __init__(
@@ -163,11 +147,7 @@ class SpectralFilter(_Spectral):
 
 
 def _modes(symbol: Symbol, periods: tuple[int, int], device: Device) -> Array:
-    """Return one quadrant of the spectrum, divided by the number of all modes.
-
-    The function `symbol` returns the spectrum. The quadrant is transposed, as `Device.convolve`
-    expects.
-    """
+    """One quadrant of the spectrum over the number of modes, transposed for `Device.convolve`."""
     mx, my = periods
     i, j = device.arange(mx // 2 + 1)[None, :], device.arange(my // 2 + 1)[:, None]
     values = symbol(2 * np.pi / mx * i, 2 * np.pi / my * j)

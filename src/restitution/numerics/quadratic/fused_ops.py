@@ -1,9 +1,8 @@
 """Steps of the minimiser. A compiled loop fuses the array operations of each step into one pass.
 
 The symbols are those of `minimise`: p is the point, g the gradient at p, r the projected gradient,
-z the preconditioned gradient, d the step, and Kd the product of K and d. Each bound is a number or
-an array of the shape of p. p, g and the bounds are in double precision; r, z, d and Kd are in
-double or single precision.
+z the preconditioned gradient, d the step, and Kd the product of K and d. p, g and the bounds
+(numbers or arrays) are in double precision, the others in double or single precision.
 """
 
 from __future__ import annotations
@@ -13,8 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.numerics.expressions import dot, max_magnitude
 from restitution.numerics.kernels import loop_takes, use_loop
-from restitution.numerics.reductions import dot, max_magnitude
 
 Array = NDArray[Any]
 Bound = NDArray[np.float64] | float
@@ -22,10 +21,7 @@ Bounds = tuple[Bound, Bound]  # lower, upper
 
 
 def as_rows(lower: Bound, upper: Bound, p: Array) -> Bounds:
-    """Expand scalar bounds to arrays of the same shape as `p`, if `loop_takes` accepts `p`.
-
-    The compiled loops require arrays. Only one row is stored; it is broadcast to all rows.
-    """
+    """Expand scalar bounds to a row broadcast to the shape of `p`, as compiled loops need them."""
 
     def rows(bound: Bound) -> Bound:
         if isinstance(bound, np.ndarray) or not loop_takes(p):
@@ -37,11 +33,11 @@ def as_rows(lower: Bound, upper: Bound, p: Array) -> Bounds:
 
 @use_loop
 def projected_gradient(p: Array, g: Array, b: Array, bounds: Bounds, out: Array) -> float:
-    """Replace the product K p in `g` by the gradient K p − b; write its projection to `out`.
+    """Replace K p in `g` by the gradient K p − b; write its projection to `out`.
 
-    A node on a bound is not free if a descent step would move it out of bounds. There the projected
-    gradient is zero. At all other nodes (free nodes) it equals the gradient. Return the largest
-    magnitude of the projected gradient, which is the violation of the optimality conditions.
+    The projected gradient is zero at nodes that a descent step would move out of bounds, and the
+    gradient at all others (free nodes). Return its largest magnitude, which is the violation of the
+    optimality conditions.
     """
     g -= b
     free = g * _free(p, g, bounds)
@@ -72,9 +68,8 @@ def projected_direction(
     r: Array,
     bounds: Bounds,
 ) -> tuple[float, bool]:
-    """Overwrite the step d with `beta` d − `length` z, truncated so that p + d is within bounds.
+    """Overwrite the step d with `beta` d − `length` z on free nodes, cut to keep p + d in bounds.
 
-    The new step is zero at nodes that are not free (see `projected_gradient` for free nodes).
     Return r·d and whether a bound truncated the step at any node.
     """
     np.multiply(d, beta, out=d, dtype=np.float64)
@@ -97,11 +92,9 @@ def violates_bounds(p: Array, d: Array, step: float, bounds: Bounds) -> bool:
 def take_step(
     p: Array, g: Array, d: Array, Kd: Array, step: float, bounds: Bounds, out: Array
 ) -> float:
-    """Update p to p + `step` d and g to g + `step` Kd.
+    """Add `step` d to p and `step` Kd to g; write the projected gradient, return its magnitude.
 
-    Write the projected gradient at the new point to `out`, and return its largest magnitude. At a
-    node where a bound has truncated d, a `step` of 1 sets p to exactly this bound, in spite of
-    rounding.
+    Where a bound has truncated d, a `step` of 1 sets p to exactly this bound, in spite of rounding.
     """
     lower, upper = bounds
     low, high = ((step == 1) & (d == (bound - p).astype(d.dtype, copy=False)) for bound in bounds)
@@ -126,7 +119,6 @@ def _free(p: Array, g: Array, bounds: Bounds) -> NDArray[np.bool_]:
 
 
 def _is_outside(p: Array, bounds: Bounds) -> bool:
-    """Whether p is outside its bounds at any node."""
     lower, upper = bounds
     outside = p < lower
     if not _is_unbounded(upper):

@@ -1,8 +1,4 @@
-"""Local means of an array, around the points of a coarse lattice ("places").
-
-A local mean is a weighted mean of the nonzero values near a place. The preconditioners of
-`multilevel` and `near_guess` damp the local means of the residual.
-"""
+"""Local means of the nonzero values of an array, around points of a coarse lattice ("places")."""
 
 from __future__ import annotations
 
@@ -20,8 +16,8 @@ Array = NDArray[Any]  # double or single precision
 def local_sums(r: Array, sums: Array, nodes: Array) -> None:
     """Sum r and count the nodes with r ≠ 0 around each place; write into `sums` and `nodes`.
 
-    `sums` and `nodes` have one value for each place. Along each axis there are at least two places.
-    A node between two places contributes to both with linear weights (hat functions).
+    Along each axis there are at least two places. A node between two places contributes to both
+    with linear weights (hat functions).
     """
     over_x, over_y = _hat_weights(r, sums)
     sums[...] = over_x.T @ r @ over_y
@@ -30,10 +26,9 @@ def local_sums(r: Array, sums: Array, nodes: Array) -> None:
 
 @use_loop
 def subtract_local_mean(r: Array, share: float, sums: Array, nodes: Array, out: Array) -> None:
-    """Write r minus `share` times the local mean of r into `out`, and zero where r = 0.
+    """Write r minus `share` times its local mean into `out`, and zero where r = 0.
 
-    `sums` and `nodes` are the results of `local_sums`. They are interpolated between the places,
-    and the local mean is their ratio.
+    The local mean is the ratio of `sums` and `nodes`, both interpolated between the places.
     """
     over_x, over_y = _hat_weights(r, sums)
     total, count = (over_x @ at_places @ over_y.T for at_places in (sums, nodes))
@@ -51,11 +46,7 @@ def damp_local_mean(r: Array, share: float, places: int, out: Array) -> None:
 
 
 def _hat_weights(r: Array, places: Array) -> list[Array]:
-    """Hat functions of the places, evaluated at the nodes of `r`.
-
-    Returns one matrix for x and one for y. Each has one row for each node and one column for each
-    place along its axis.
-    """
+    """Hat functions, one matrix (nodes, places) for x and one for y."""
     hats = []
     for n, m in zip(r.shape, places.shape, strict=True):
         node, place = (np.cumsum(np.ones_like(places, shape=k)) for k in (n, m))

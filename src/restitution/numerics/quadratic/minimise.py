@@ -3,13 +3,12 @@
     minimise  ½ pᵀK p − pᵀb   subject to   lower ≤ p ≤ upper
 
 K is symmetric positive definite and known only through its product with an array. With the
-gradient g = K p − b, the solution satisfies the conditions of Karush, Kuhn and Tucker:
+gradient g = K p − b, the solution satisfies
 
     g ≥ 0 where p = lower,   g = 0 between the bounds,   g ≤ 0 where p = upper.
 
-The largest violation of these three conditions measures the error of a solution. The caller decides
-what the bounds mean (contact, yield, friction, JKR adhesion). Contacts with an attraction of finite
-range are solved by `truncated_newton` instead.
+The largest violation of these conditions measures the error of a solution. The caller decides what
+the bounds mean (contact, yield, friction, JKR adhesion).
 """
 
 from __future__ import annotations
@@ -21,6 +20,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.numerics.expressions import dot, max_magnitude
 from restitution.numerics.quadratic.fused_ops import (
     Bound,
     as_rows,
@@ -31,7 +31,6 @@ from restitution.numerics.quadratic.fused_ops import (
     take_step,
     violates_bounds,
 )
-from restitution.numerics.reductions import dot, max_magnitude
 
 Array = NDArray[np.float64]
 
@@ -68,9 +67,8 @@ class Operator(Protocol):
 class BoundedQuadratic:
     """The problem: minimise ½ pᵀK p − pᵀb with lower ≤ p ≤ upper.
 
-    `K` is applied in double precision. `b` has shape (nx, ny), and a bound is a number or an array
-    of this shape. `K_single` is K in single precision; it is applied to the steps of the minimiser.
-    If `K_single` is None, K is applied instead.
+    `b` has shape (nx, ny), and a bound is a number or an array of this shape. `K_single`, K in
+    single precision, is applied to the steps of the minimiser; None stands for K itself.
     """
 
     K: Operator
@@ -108,39 +106,27 @@ def minimise_quadratic(
 ) -> Minimum:
     """Solve `problem` by projected, preconditioned conjugate gradients (Polak–Ribière+).
 
-    The search on the free nodes follows Polonsky and Keer (1999, Wear 231, 206–219). An upper bound
-    is added, and four points are changed:
+    The search on the free nodes follows Polonsky and Keer (1999, Wear 231, 206–219), with an upper
+    bound and four changes (docs/method.md):
 
-    1. The direction first gets a trial length, which follows from earlier steps. It is truncated so
-       that a step of this length stays within the bounds. The product with K is computed after this
-       truncation, not before it. Then the direction is scaled to its optimal length, as far as the
-       bounds allow. So an iteration takes one product, and no step raises the energy.
-    2. The direction is not reset when nodes reach or leave a bound. The factor β of Polak and
-       Ribière is limited to the range from zero to the β of Fletcher and Reeves (Gilbert and
-       Nocedal 1992, SIAM J. Optim. 2, 21–42). Each direction contains its trial length as a factor.
-       So β is also multiplied by the ratio of the new trial length to the previous one.
-    3. The projected gradient is preconditioned by an approximate inverse of K. This inverse can be
-       unsymmetric and give an ascent direction, which is then reversed.
-    4. If the preconditioned gradient makes no progress, one step follows the gradient itself. So
-       the solve does not stall.
+    1. Each direction is truncated at a trial length before the product with K and then scaled to
+    its
+       optimal length within the bounds. So an iteration takes one product, and no step raises the
+       energy.
+    2. The direction is not reset when nodes reach or leave a bound: 0 ≤ β ≤ β of Fletcher and
+    Reeves
+       (Gilbert and Nocedal 1992, SIAM J. Optim. 2, 21–42), times the change of the trial length.
+    3. The approximate inverse can be unsymmetric; an ascent direction is reversed.
+    4. If the preconditioned gradient makes no progress, one step follows the gradient itself.
 
     `start` is the initial point, shape (nx, ny), and is overwritten. `precondition` is an
-    approximate inverse of K. `tolerance` limits the violation of the optimality conditions and has
-    the units of `b`. With `mean_violation`, the violation is the root mean square of the nonzero
-    values of the projected gradient. Otherwise it is the largest magnitude of the projected
-    gradient.
-
-    The first gradient is computed with K, or with `K_single` if `accept_estimated_gradient` is
-    true. If `start` is within the bounds and the product of `K_single` and `start` is known, give
-    this product as `K_start`. The first gradient then uses `K_start` and overwrites it.
-
-    Each step updates the gradient by the product of K and the step. The estimated rounding errors
-    of these products are added in quadrature; the sum is the error of the updated gradient. The
-    gradient is computed with K again when the violation is within `tolerance` or close to this
-    error. With `accept_estimated_gradient`, the updated gradient is final if the violation plus the
-    error is within `tolerance`. Without this option, the final gradient is always computed with K
-    at the final point. If the solve does not converge, `converged` of the result is False; no
-    exception is raised.
+    approximate inverse of K. `tolerance` limits the violation of the optimality conditions, in the
+    units of `b`: the largest magnitude of the projected gradient or, with `mean_violation`, the
+    root mean square of its nonzero values. `K_start`, if given, is the product of `K_single` and a
+    `start` within the bounds, and is overwritten. With `accept_estimated_gradient`, the first
+    gradient is computed with `K_single`, and the updated gradient is final if the violation plus
+    its estimated rounding error is within `tolerance`; without, the final gradient is computed with
+    K. If the solve does not converge, `converged` of the result is False.
     """
     # Floating-point type of the direction d, of the arrays r and z (from which d is computed), and
     # of the product K d.
@@ -202,10 +188,7 @@ def minimise_quadratic(
 
 
 def violation(p: Array, product: Array, b: Array, lower: Bound, upper: Bound) -> float:
-    """Return the largest violation of the optimality conditions, in the units of the gradient.
-
-    `product` holds K p and is overwritten with the gradient.
-    """
+    """Largest violation of the optimality conditions; `product` is K p and becomes the gradient."""
     bounds = as_rows(lower, upper, p)
     return projected_gradient(p, product, b, bounds, np.empty_like(p, dtype=np.float32))
 
@@ -215,10 +198,7 @@ def _largest(largest: float, r: Array) -> float:
 
 
 def _root_mean_square(largest: float, r: Array) -> float:
-    """Root mean square of the nonzero values of `r`, or `largest` if it is not positive.
-
-    `largest` is the largest magnitude in `r`.
-    """
+    """Root mean square of the nonzero values of `r`, or its largest magnitude if not positive."""
     if not largest > 0:
         return largest
     return math.sqrt(dot_products(r, r, r)[0] / np.count_nonzero(r))

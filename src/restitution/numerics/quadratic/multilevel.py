@@ -1,27 +1,23 @@
-"""Minimisation within bounds, first on coarser grids and then on a window of the finest grid.
+"""Minimisation within bounds from a guess on coarser grids, on a window of the finest grid.
 
-This module solves the problem of `minimise` on a uniform grid: minimise ½ pᵀK p − pᵀb with the
-lower bound 0. The unknown p is a pressure. If b is replaced by its means over 2 × 2 nodes, the same
-problem arises on a grid with half as many nodes along each axis. The solution on this coarser grid
-is a good first guess of p, apart from the shortest waves (nested iteration; Venner and Lubrecht
-2000, *Multilevel Methods in Lubrication*). The guess also shows where the pressure is nonzero, so
-the fine problem is solved on a window around this region. The optimality conditions are then
-checked on all nodes. If nodes outside the window violate these conditions, the window is widened to
-include these nodes, and the problem is solved again.
+The problem is that of `minimise` with the lower bound 0. The guess shows where the pressure is
+nonzero, so the fine problem is solved on a window around this region. The optimality conditions are
+then checked on all nodes; nodes outside the window that violate them widen it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, TypeGuard
+from typing import Any, TypeGuard, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from restitution.numerics.box import Box, bounding_box, shape_of, union, widen
 from restitution.numerics.convolution.operators import Convolution, SpectralFilter
+from restitution.numerics.expressions import dot
 from restitution.numerics.quadratic.fused_ops import Bound
-from restitution.numerics.quadratic.grid_transfer import prolong, restrict
+from restitution.numerics.quadratic.grid_transfer import Fields, nested, prolonged
 from restitution.numerics.quadratic.local_mean import damp_local_mean
 from restitution.numerics.quadratic.minimise import (
     Array,
@@ -31,7 +27,6 @@ from restitution.numerics.quadratic.minimise import (
     minimise_quadratic,
     violation,
 )
-from restitution.numerics.reductions import dot
 
 Mask = NDArray[np.bool_]
 
@@ -39,10 +34,9 @@ Mask = NDArray[np.bool_]
 # At level n the spacing is 2ⁿ times the spacing of the finest grid.
 Operators = Callable[[tuple[int, int], int], tuple[Convolution, SpectralFilter]]
 
-# A solve starts from a guess on the next coarser grid if the shorter edge of its own grid has at
-# least this number of nodes. On smaller grids the guess costs more time than it saves. The first
-# number applies to the finest grid, and the second number to coarser grids.
-MIN_NODES_FOR_GUESS, _MIN_NODES_TO_COARSEN = 120, 80
+# The finest grid is solved from a guess on coarser grids if its shorter edge has at least this
+# number of nodes. On smaller grids the guess costs more time than it saves.
+MIN_NODES_FOR_GUESS = 120
 # Tolerance on coarser grids, as a fraction of the largest b. A smaller tolerance gains nothing,
 # because prolongation errors are larger.
 _COARSE_ACCURACY = 1e-2
@@ -77,16 +71,14 @@ def solve_multilevel(
     max_iterations: int,
     periodic: bool = False,
 ) -> tuple[Minimum, int]:
-    """Minimise ½ pᵀK p − pᵀb with 0 ≤ p ≤ `upper`, starting from solutions on coarser grids.
+    """Minimise ½ pᵀK p − pᵀb with 0 ≤ p ≤ `upper`; also return the products with K.
 
     `operators` builds K and its approximate inverse. `b` has shape (nx, ny); `upper` is a number or
-    an array of this shape. `tolerance` limits the violation of the optimality conditions and has
-    the units of `b`. `periodic` is true if the operators are periodic. Then the fine problem is
-    solved on the whole grid, and only grids of even size are coarsened. The approximate inverse of
-    a periodic K is nearly exact, so it is used without damping.
-
-    Return the result and the number of products with K on the finest grid. If the solve does not
-    converge, `converged` of the result is False; no exception is raised.
+    an array of this shape. `tolerance` limits the violation of the optimality conditions, in the
+    units of `b`. With `periodic` operators, the fine problem is solved on the whole grid, only
+    grids of even size are coarsened, and the approximate inverse, which is nearly exact, is used
+    without damping. The count is of products on the finest grid. If the solve does not converge,
+    `converged` of the result is False.
     """
     whole_grid: Box = (slice(0, b.shape[0]), slice(0, b.shape[1]))
     size = shape_of(whole_grid)
@@ -94,7 +86,7 @@ def solve_multilevel(
     # The operator of the whole grid is built first, because smaller windows reuse its coefficients.
     whole_K, whole_inverse = operators(size, 0)
     if min(size) >= MIN_NODES_FOR_GUESS:
-        p = _first_guess(operators, b, upper, 1, periodic)
+        p = _first_guess(operators, b, upper, periodic)
     window = None if periodic else bounding_box(p > 0)
     if window is not None and _is_worth_its_check(window, size):
         # Coarse grids miss some contact. Therefore the window also includes the nodes where the
@@ -108,12 +100,10 @@ def solve_multilevel(
         whole = window == whole_grid
         K, inverse = (whole_K, whole_inverse) if whole else operators(shape_of(window), 0)
         bound = upper[window] if _is_array(upper) else upper
-        found = minimise_quadratic(
+        minimum = minimise_quadratic(
             BoundedQuadratic(K, b[window], 0.0, bound, K.single_precision),
             start=p[window],
-            precondition=inverse
-            if periodic
-            else mean_damped_preconditioner(inverse, p[window], b[window], bound),
+            precondition=_preconditioner(inverse, p[window], b[window], bound, periodic),
             tolerance=tolerance,
             max_iterations=max_iterations,
             K_start=None if Kp is None else Kp[window],
@@ -122,10 +112,10 @@ def solve_multilevel(
             accept_estimated_gradient=not whole,
         )
         if whole:
-            return found, products + whole_K.count
+            return minimum, products + whole_K.count
         products += K.count
-        iterations, converged = found.iterations, found.converged
-        del K, inverse, found  # free the arrays of the window before the check allocates more
+        iterations, converged = minimum.iterations, minimum.converged
+        del K, inverse, minimum  # free the arrays of the window before the check allocates more
         g = whole_K(p, out=Kp)
         residual = violation(p, g, b, 0.0, upper)
         if residual <= tolerance or not converged:
@@ -143,16 +133,11 @@ def solve_multilevel(
 def mean_damped_preconditioner(inverse: Operator, p: Array, b: Array, upper: Bound) -> Operator:
     """Return an operator that damps the local means of its argument and then applies `inverse`.
 
-    A residual that is constant on the contact nodes drops to zero at the contact edge. This drop
-    contains short waves. The inverse of a smoothing operator amplifies short waves, more so on
-    finer grids (McLean and Steinbach 1999, Adv. Comput. Math. 11, 271–286). So `inverse`
-    overestimates the response to a constant residual, by a factor of up to 30 on rough contacts.
+    A residual that is constant on the contact nodes drops to zero at the contact edge. The inverse
+    of a smoothing operator amplifies the short waves of this drop, more so on finer grids (McLean
+    and Steinbach 1999, Adv. Comput. Math. 11, 271–286), by a factor of up to 30 on rough contacts.
     Without damping, conjugate gradients must correct this error again whenever nodes reach or leave
-    a bound.
-
-    The damping factor follows from the guess `p`, for which K p = b on the free nodes. The factor
-    is applied to local means around 8 × 8 points of a coarse lattice, not to one mean over all
-    nodes. If no damping is needed, the result is `inverse` itself.
+    a bound. The damping factor follows from the guess `p`, for which K p = b on the free nodes.
     """
     factor = mean_damping(inverse, p, b, upper)
     if factor == 1.0:
@@ -167,7 +152,7 @@ def mean_damped_preconditioner(inverse: Operator, p: Array, b: Array, upper: Bou
 
 
 def mean_damping(inverse: Operator, p: Array, b: Array, upper: Bound) -> float:
-    """Return the factor of `mean_damped_preconditioner`, or 1 if no damping is needed."""
+    """Factor of `mean_damped_preconditioner`, or 1 if no damping is needed."""
     free, free_nodes, contact_nodes = _between_the_bounds(p, upper)
     # Without an initial guess (p = 0), or if at least half of the contact nodes yield, nothing is
     # damped.
@@ -180,30 +165,12 @@ def mean_damping(inverse: Operator, p: Array, b: Array, upper: Bound) -> float:
     return factor if factor <= _MAX_DAMPING_FACTOR else 1.0
 
 
-def may_coarsen(shape: tuple[int, ...], periodic: bool) -> bool:
-    """Whether a grid of this shape is large enough to be coarsened.
-
-    If `periodic` is true, the numbers of nodes along both axes must also be even.
-    """
-    even = all(n % 2 == 0 for n in shape)
-    return min(shape) >= _MIN_NODES_TO_COARSEN and (even or not periodic)
-
-
-def coarsened(values: Array) -> Array:
-    """Restrict `values` to the next coarser grid, in a new array."""
-    rows, columns = values.shape
-    coarse = np.empty_like(values, shape=((rows + 1) // 2, (columns + 1) // 2), order="C")
-    restrict(values, coarse)
-    return coarse
-
-
 def _is_array(bound: Bound) -> TypeGuard[Array]:
-    """Whether `bound` is an array, with one value for each node."""
     return np.ndim(bound) > 0
 
 
 def _between_the_bounds(p: Array, upper: Bound) -> tuple[Mask, int, int]:
-    """Return the mask of nodes with 0 < p < `upper`, their number, and the number with p > 0."""
+    """Mask of nodes with 0 < p < `upper`, their number, and the number with p > 0."""
     touching = p > 0
     free = touching & (p < upper)
     return free, int(np.count_nonzero(free)), int(np.count_nonzero(touching))
@@ -215,37 +182,44 @@ def _is_worth_its_check(window: Box, size: tuple[int, int]) -> bool:
     return rows * columns <= _MAX_WINDOW_FRACTION * size[0] * size[1]
 
 
-def _first_guess(
-    operators: Operators, b: Array, upper: Bound, level: int, periodic: bool = False
-) -> Array:
-    """Solve on the grid of `level`; return the solution, prolonged to the next finer grid.
+def _preconditioner(
+    inverse: Operator, p: Array, b: Array, upper: Bound, periodic: bool
+) -> Operator:
+    return inverse if periodic else mean_damped_preconditioner(inverse, p, b, upper)
 
-    The solve starts from the first guess of the next coarser grid, or from zero on the coarsest
-    grid.
-    """
-    if not may_coarsen(b.shape, periodic):
-        return np.zeros_like(b)
-    coarse, bound = coarsened(b), coarsened(upper) if _is_array(upper) else upper
-    K, inverse = operators((coarse.shape[0], coarse.shape[1]), level)
-    start = _first_guess(operators, coarse, bound, level + 1, periodic)
-    found = minimise_quadratic(
-        BoundedQuadratic(K, coarse, 0.0, bound, K.single_precision),
-        start=start,
-        precondition=inverse
-        if periodic
-        else mean_damped_preconditioner(inverse, start, coarse, bound),
-        tolerance=_COARSE_ACCURACY * max(float(b.max()), 0.0),
-        max_iterations=COARSE_ITERATIONS,
-        accept_estimated_gradient=True,
-    )
-    guess = np.empty_like(b, order="C")
-    _, free_nodes, contact_nodes = _between_the_bounds(found.point, bound)
+
+def _first_guess(operators: Operators, b: Array, upper: Bound, periodic: bool = False) -> Array:
+    """Solution on the next coarser grid, prolonged; zero if the grid is not coarsened."""
+
+    def refine(coarse: Fields, start: Array | None, fine: Fields, level: int) -> Array:
+        b, upper = cast(tuple[Array, Bound], coarse)
+        start = np.zeros_like(b) if start is None else start
+        K, inverse = operators((b.shape[0], b.shape[1]), level)
+        minimum = minimise_quadratic(
+            BoundedQuadratic(K, b, 0.0, upper, K.single_precision),
+            start=start,
+            precondition=_preconditioner(inverse, start, b, upper, periodic),
+            tolerance=_COARSE_ACCURACY * max(float(np.max(fine[0])), 0.0),
+            max_iterations=COARSE_ITERATIONS,
+            accept_estimated_gradient=True,
+        )
+        return _on_finer_grid(minimum, K.diagonal, upper, *cast(tuple[Array, Bound], fine))
+
+    guess = nested(refine, (b, upper), periodic=periodic)
+    return np.zeros_like(b) if guess is None else guess
+
+
+def _on_finer_grid(
+    minimum: Minimum, diagonal: float, bound: Bound, b: Array, upper: Bound
+) -> Array:
+    """Prolong the point of `minimum` (bound `bound`) to the grid of `b`, within 0 and `upper`."""
+    _, free_nodes, contact_nodes = _between_the_bounds(minimum.point, bound)
     if free_nodes > _MAX_FREE_FRACTION * contact_nodes:
-        prolong(found.point, guess)
+        guess = prolonged(minimum.point, b)
         # A node can have a smaller bound than the nodes of the coarser grid around it.
         return np.minimum(guess, upper, out=guess) if _is_array(upper) else guess
     # In a nearly fully plastic contact, the pressure jumps from the upper bound at one node to zero
     # at the next. The gradient is minus the plastic displacement at the yielded node, and the gap
     # at the open node. These two lengths show how far the contact edge is from each node.
-    prolong(found.point - _GAP_FRACTION / K.diagonal * found.gradient, guess)
+    guess = prolonged(minimum.point - _GAP_FRACTION / diagonal * minimum.gradient, b)
     return np.clip(guess, 0.0, upper, out=guess)

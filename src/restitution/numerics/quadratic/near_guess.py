@@ -1,30 +1,25 @@
 """Approximate minimisation without upper bound, on a window around a guess from coarser grids.
 
-This module solves the problem of `multilevel` for elastic contacts, which have no upper bound. The
-coarser grid uses means over 2 × 2 nodes, and these means hide the roughness between the nodes. So
-on a rough surface, far too many nodes of the coarser grid are in contact. But the mean pressure on
-the coarser grid is nearly right. Therefore the guess from the coarser grid is corrected in three
-steps. Short waves of the pressure are added. Negative pressures are set to zero. The positive
-pressures are lowered until their local means are nearly the same as on the coarser grid.
-
-During the iterations, the preconditioner keeps the local means nearly constant. It is based on an
-approximate inverse of K. On separate contact patches, this inverse alone would convert short waves
-of the residual to a change of the mean pressure. Later iterations would have to undo this change.
-So the local means are damped twice: before the approximate inverse is applied (see
-`multilevel.mean_damped_preconditioner`) and after it.
+On a rough surface, far too many nodes of the coarser grid are in contact, because means over 2 × 2
+nodes hide the roughness between the nodes; but the mean pressure is nearly right. So short waves
+are added to the guess, negative pressures are set to zero, and the positive pressures are lowered
+until their local means are nearly the same as on the coarser grid. The preconditioner then keeps
+the local means nearly constant. On separate contact patches, the approximate inverse alone would
+convert short waves of the residual to a change of the mean pressure, which later iterations would
+have to undo.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from restitution.numerics.box import Box, bounding_box, shape_of, widen
 from restitution.numerics.convolution.operators import Convolution
 from restitution.numerics.quadratic.fused_ops import as_rows, projected_gradient
-from restitution.numerics.quadratic.grid_transfer import prolong
+from restitution.numerics.quadratic.grid_transfer import Fields, nested, prolonged
 from restitution.numerics.quadratic.local_mean import (
     damp_local_mean,
     local_sums,
@@ -42,8 +37,6 @@ from restitution.numerics.quadratic.multilevel import (
     MARGIN,
     MIN_NODES_FOR_GUESS,
     Operators,
-    coarsened,
-    may_coarsen,
     mean_damping,
 )
 
@@ -58,22 +51,20 @@ def solve_near_guess(
     """Minimise ½ pᵀK p − pᵀb with 0 ≤ p approximately, on a window around a guess.
 
     The arguments are those of `solve_multilevel`, but `tolerance` limits the root mean square of
-    the violation. The largest violation often occurs at a few nodes that hardly affect the result.
-
-    The window includes all nodes where the guess has pressure. It also includes all nodes where the
-    bodies overlap after the displacement K p of the guess. Nodes outside the window are neither
-    solved nor checked. Return the result on the window, the window, and the number of products with
-    K on the window.
+    the violation: the largest violation often occurs at a few nodes that hardly affect the result.
+    Nodes outside the window are neither solved nor checked; it includes all nodes where the guess
+    has pressure or leaves an overlap. Return the result on the window, the window, and the number
+    of products with K on the window.
     """
     size = b.shape[0], b.shape[1]
     p, displacement, window = np.zeros_like(b), np.zeros_like(b), None
     if min(size) >= MIN_NODES_FOR_GUESS:
-        p, displacement = _guess(operators, b, 1)
+        p, displacement = _guess(operators, b) or (p, displacement)
         window = bounding_box((p > 0) | (displacement < b))
     whole_grid = slice(0, size[0]), slice(0, size[1])
     window = whole_grid if window is None else widen(window, MARGIN, size)
     K, inverse = operators(shape_of(window), 0)
-    found = _solve_from(
+    minimum = _solve_from(
         p[window],
         displacement[window],
         (K, inverse),
@@ -81,25 +72,27 @@ def solve_near_guess(
         tolerance=tolerance,
         max_iterations=max_iterations,
     )
-    return found, window, K.count
+    return minimum, window, K.count
 
 
-def _guess(operators: Operators, b: Array, level: int) -> tuple[Array, Array]:
-    """Solve on the grid of `level`; return p and K p prolonged to the next finer grid."""
-    if not may_coarsen(b.shape, periodic=False):
-        return np.zeros_like(b), np.zeros_like(b)
-    coarse = coarsened(b)
-    found = _solve_from(
-        *_guess(operators, coarse, level + 1),
-        operators((coarse.shape[0], coarse.shape[1]), level),
-        coarse,
-        tolerance=_COARSE_ACCURACY * max(float(b.max()), 0.0),
-        max_iterations=COARSE_ITERATIONS,
-    )
-    p, displacement = np.empty_like(b, order="C"), np.empty_like(b, order="C")
-    prolong(found.point, p)
-    prolong(np.add(found.gradient, coarse, out=coarse), displacement)
-    return p, displacement
+def _guess(operators: Operators, b: Array) -> tuple[Array, Array] | None:
+    """Return p and K p of the next coarser grid, prolonged."""
+
+    def refine(
+        coarse: Fields, start: tuple[Array, Array] | None, fine: Fields, level: int
+    ) -> tuple[Array, Array]:
+        (b,), (finer,) = cast(tuple[Array], coarse), cast(tuple[Array], fine)
+        minimum = _solve_from(
+            *(start or (np.zeros_like(b), np.zeros_like(b))),
+            operators((b.shape[0], b.shape[1]), level),
+            b,
+            tolerance=_COARSE_ACCURACY * max(float(finer.max()), 0.0),
+            max_iterations=COARSE_ITERATIONS,
+        )
+        displacement = np.add(minimum.gradient, b, out=b)
+        return prolonged(minimum.point, finer), prolonged(displacement, finer)
+
+    return nested(refine, (b,))
 
 
 def _solve_from(
@@ -126,31 +119,29 @@ def _solve_from(
 
 
 def add_short_waves(guess: Array, displacement: Array, inverse: Operator, b: Array) -> Array:
-    """Add the pressure −`inverse` r to the guess p, where r is the projected gradient.
+    """Add −`inverse` r to the guess, with the projected gradient r; keep its local means nearly.
 
-    r is K p − b on free nodes and zero elsewhere. The result has no negative pressure, is zero
-    where r = 0, and has nearly the same local means as the guess. `displacement` is K p from the
+    The result has no negative pressure and is zero where r = 0. `displacement` is K p from the
     coarser grid, so it lacks only short waves. It is overwritten.
     """
     p: Any = guess.astype(np.float32)
     free, change = np.empty_like(p), np.empty_like(p)
     projected_gradient(guess, displacement, b, as_rows(0.0, math.inf, guess), free)
-    wanted, sums, nodes = np.empty_like(b, shape=(3, _PLACES, _PLACES))
-    local_sums(p, wanted, nodes)
+    target, sums, nodes = np.empty_like(b, shape=(3, _PLACES, _PLACES))
+    local_sums(p, target, nodes)
     p -= inverse(free, out=change)
     p *= free != 0
     for _ in range(_PASSES):
         np.maximum(p, 0.0, out=p)
         local_sums(p, sums, nodes)
-        subtract_local_mean(p, 1.0, sums - wanted, nodes, p)
+        subtract_local_mean(p, 1.0, sums - target, nodes, p)
     return np.maximum(p, 0.0, dtype=np.float64)  # type: ignore[no-any-return]
 
 
 def balanced_preconditioner(inverse: Operator, p: Array, b: Array) -> Operator:
-    """Return an operator that damps local means, applies `inverse`, and damps local means again.
+    """Return an operator that damps local means before and after it applies `inverse`.
 
-    Each damping multiplies the local means by the square root of the factor of
-    `multilevel.mean_damped_preconditioner`. So both together damp by the whole factor.
+    Both together damp by the factor of `multilevel.mean_damped_preconditioner`.
     """
     share = 1.0 - math.sqrt(mean_damping(inverse, p, b, math.inf))
     if share == 0.0:

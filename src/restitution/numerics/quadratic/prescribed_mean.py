@@ -2,28 +2,27 @@
 
     minimise  ½ pᵀK p + pᵀh   subject to   0 ≤ p ≤ upper,   mean(p) = `mean`.
 
-The prescribed mean has a Lagrange multiplier D, which is a scalar. For a given D, p minimises
-½ pᵀK p − pᵀ(D − h) within the bounds. The mean of p increases with D, so a bracketed secant method
-finds the D at which the mean is as prescribed. Every solve for p starts from the previous p. Its
-tolerance is proportional to the estimated error of D. The same problem is solved first on the next
-coarser grid, which gives the initial D, p and slope dD/dmean.
+For a given Lagrange multiplier D of the mean, p minimises ½ pᵀK p − pᵀ(D − h) within the bounds.
+The mean increases with D, so a bracketed secant method finds D. Every solve starts from the
+previous p, with a tolerance proportional to the estimated error of D.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import cast
 
 import numpy as np
 
-from restitution.numerics.quadratic.grid_transfer import prolong
+from restitution.numerics.quadratic.grid_transfer import Fields, nested, prolonged
 from restitution.numerics.quadratic.minimise import (
     Array,
     BoundedQuadratic,
     Minimum,
     minimise_quadratic,
 )
-from restitution.numerics.quadratic.multilevel import Operators, coarsened, may_coarsen
+from restitution.numerics.quadratic.multilevel import Operators
 
 _MAX_SOLVES = 60  # largest number of solves on one grid
 
@@ -36,13 +35,15 @@ _MEAN_SHARE = 0.5
 _COARSE_RESIDUAL, _COARSE_MEAN = 1e-2, 0.02
 
 
+_Start = tuple[Array, float, float]  # p, multiplier D and slope dD/dmean
+
+
 @dataclass(frozen=True)
 class MeanTarget:
-    """The prescribed mean of p, and the tolerances of `minimise_at_mean`.
+    """The prescribed mean of p with its relative tolerance `precision`.
 
-    `mean` is the prescribed mean and `precision` its relative tolerance. `compliance` is the value
-    of K p for a constant p = 1. `residual` limits the violation of the optimality conditions as a
-    fraction of D − `compliance` · `mean`, where D is the multiplier.
+    `compliance` is the value of K p for p = 1. `residual` limits the violation of the optimality
+    conditions as a fraction of D − `compliance` · `mean`, with the multiplier D.
     """
 
     mean: float
@@ -51,12 +52,9 @@ class MeanTarget:
     residual: float
 
     def tolerance(self, multiplier: float, slope: float) -> float:
-        """Return the largest allowed violation of the optimality conditions.
+        """Largest allowed violation v of the optimality conditions, in the units of D.
 
-        `multiplier` is the Lagrange multiplier D, and `slope` is dD/dmean. The result has the units
-        of D. It is the smaller of two limits. The first limit is `residual` times
-        |D − `compliance` · `mean`|. The second limit is `slope` times the allowed error of the
-        mean, because a violation v changes the mean by at most v/slope.
+        `slope` is dD/dmean: v changes the mean by at most v/slope.
         """
         by_residual = self.residual * abs(multiplier - self.compliance * self.mean)
         return min(by_residual, _MEAN_SHARE * self.precision * self.mean * slope)
@@ -64,11 +62,7 @@ class MeanTarget:
 
 @dataclass(frozen=True)
 class MeanSolution:
-    """The minimum at the prescribed mean, with its Lagrange multiplier D.
-
-    `slope` is dD/dmean. `products` is the number of products with the matrix K on the grid of the
-    minimum. It does not include products on coarser grids.
-    """
+    """The minimum, its Lagrange multiplier D, dD/dmean, and the products with K on its grid."""
 
     minimum: Minimum
     multiplier: float
@@ -77,35 +71,39 @@ class MeanSolution:
 
 
 def minimise_at_mean(
+    operators: Operators, h: Array, upper: float, target: MeanTarget, *, max_iterations: int
+) -> MeanSolution:
+    """Minimise ½ pᵀK p + pᵀh with 0 ≤ p ≤ `upper` at a prescribed mean of p, below `upper`.
+
+    `h` has shape (nx, ny) and is not negative. The operators are periodic and positive definite.
+    `max_iterations` limits the iterations of each solve. If the search does not converge,
+    `converged` of the minimum is False.
+    """
+
+    def refine(coarse: Fields, start: _Start | None, fine: Fields, level: int) -> _Start:
+        (h,), (finer,) = cast(tuple[Array], coarse), cast(tuple[Array], fine)
+        rough = replace(target, precision=_COARSE_MEAN, residual=_COARSE_RESIDUAL)
+        solution = _search(operators, h, upper, rough, start, max_iterations, level)
+        return prolonged(solution.minimum.point, finer), solution.multiplier, solution.slope
+
+    start = nested(refine, (h,), periodic=True)
+    return _search(operators, h, upper, target, start, max_iterations, level=0)
+
+
+def _search(
     operators: Operators,
     h: Array,
     upper: float,
     target: MeanTarget,
-    *,
+    start: _Start | None,
     max_iterations: int,
-    level: int = 0,
+    level: int,
 ) -> MeanSolution:
-    """Minimise ½ pᵀK p + pᵀh with 0 ≤ p ≤ `upper` at a prescribed mean of p.
-
-    The mean must be below `upper`. `h` has shape (nx, ny) and is not negative. The operators are
-    periodic and positive definite. `max_iterations` limits the iterations of each solve. `level` is
-    the level of the grid of `h` (0: finest). If the search does not converge, `converged` of the
-    minimum is False; no exception is raised.
-    """
-    p = np.zeros_like(h)
-    multiplier = target.compliance * target.mean + 0.5 * float(h.mean())
-    slope = 2 * target.compliance
-    if may_coarsen(h.shape, periodic=True):
-        coarse = minimise_at_mean(
-            operators,
-            coarsened(h),
-            upper,
-            replace(target, precision=_COARSE_MEAN, residual=_COARSE_RESIDUAL),
-            max_iterations=max_iterations,
-            level=level + 1,
-        )
-        prolong(coarse.minimum.point, p)
-        multiplier, slope = coarse.multiplier, coarse.slope
+    p, multiplier, slope = start or (
+        np.zeros_like(h),
+        target.compliance * target.mean + 0.5 * float(h.mean()),
+        2 * target.compliance,
+    )
     K, inverse = operators((h.shape[0], h.shape[1]), level)
     bracket = _Bracket(slope, target.compliance)
     # Estimated error of the multiplier D.
@@ -113,7 +111,7 @@ def minimise_at_mean(
     for _ in range(_MAX_SOLVES):
         b = multiplier - h
         tolerance = target.tolerance(multiplier, bracket.slope)
-        found = minimise_quadratic(
+        minimum = minimise_quadratic(
             BoundedQuadratic(K, b, 0.0, upper, K.single_precision),
             start=p,
             precondition=inverse,
@@ -123,36 +121,29 @@ def minimise_at_mean(
         )
         mean = float(p.mean())
         meets = abs(mean - target.mean) <= target.precision * target.mean
-        done = meets and found.residual <= tolerance
-        if done or not found.converged:
+        done = meets and minimum.residual <= tolerance
+        if done or not minimum.converged:
             break
         if meets:  # the mean is accurate enough, but the solve needs a smaller tolerance
             error = 0.0
             continue
-        following = bracket.following(multiplier, mean - target.mean, 2 * found.residual)
+        following = bracket.following(multiplier, mean - target.mean, 2 * minimum.residual)
         multiplier, error = following, abs(following - multiplier)
-    return MeanSolution(replace(found, converged=done), multiplier, bracket.slope, K.count)
+    return MeanSolution(replace(minimum, converged=done), multiplier, bracket.slope, K.count)
 
 
 class _Bracket:
     """Secant steps to the root of an increasing function that is negative at zero."""
 
     def __init__(self, slope: float, least_slope: float) -> None:
-        """Start with `slope` as the estimate of dx/dy for the function y(x).
-
-        Later estimates are at least `least_slope`.
-        """
+        """`slope` estimates dx/dy of the function y(x); later estimates are at least the least."""
         self.slope = slope
         self._least_slope = least_slope
         self._low, self._high = 0.0, math.inf
         self._before: tuple[float, float] | None = None
 
     def following(self, x: float, y: float, uncertainty: float) -> float:
-        """Return the next argument to try.
-
-        `y` is the latest function value, computed at the argument `x`. This value has an error: it
-        is the exact value at an unknown argument, at most `uncertainty` away from `x`.
-        """
+        """Next argument to try, after the value `y` at an argument within `uncertainty` of `x`."""
         if y > 0:
             self._high = min(self._high, x + uncertainty)
         else:

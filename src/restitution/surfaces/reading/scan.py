@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import unicodedata
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -31,6 +32,8 @@ MOST_PIXELS = 2**26
 
 # Provenance entry for files whose first scan line is at the top of the picture.
 Y_DOWN = {"y_axis": "down"}
+
+_UTF16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 
 @dataclass(frozen=True)
@@ -87,3 +90,13 @@ def _per_metre(unit: object) -> float | None:
         return None
     # NFKC unifies the two code points that look like µ, and the two that look like Å.
     return _PER_METRE.get(unicodedata.normalize("NFKC", unit))
+
+
+def decode(raw: bytes) -> str:
+    """Decode UTF-8, UTF-16 with its mark, or else Latin-1."""
+    if raw.startswith(_UTF16):
+        return raw.decode("utf-16", errors="replace")
+    try:
+        return raw.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return raw.decode("latin-1")

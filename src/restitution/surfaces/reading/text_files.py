@@ -9,18 +9,20 @@ from __future__ import annotations
 
 import re
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from restitution.errors import SurfaceError, shown
-from restitution.surfaces.reading.axes import axes_of
-from restitution.surfaces.reading.decode import decode
 from restitution.surfaces.reading.numpy_files import SAVE_AS_NUMPY
-from restitution.surfaces.reading.scan import Y_DOWN, Scan, in_metres
+from restitution.surfaces.reading.scan import Y_DOWN, Scan, decode, in_metres
+from restitution.surfaces.surface import Array
 
 TEXT_SUFFIXES = frozenset({".txt", ".csv", ".dat", ".asc"})
 
+_LEAST_AXIS = 4  # smallest number of points of an axis
+_EVEN = 1e-2  # largest relative difference between the steps of an axis, whose values are rounded
 _LEAST_VALUES = 4  # smallest number of heights of a scan line; fewer values may be coordinates
 _LONGEST = 200  # longer header values (in characters) are not read as a number with a unit
 _NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?"
@@ -77,7 +79,7 @@ def read_text(path: Path) -> Scan:
         )
     size, metres_per_value, details, counts = _read_header(path, comments)
     values = np.array(rows, dtype=np.float64)
-    axes = axes_of(values)
+    axes = _axes_of(values)
     if axes is None and _has_text_corner(data[0][1]):
         raise _damaged(path, *data[0], width)
     if axes is not None:
@@ -250,3 +252,46 @@ def _check_counts(path: Path, stated: _Counts, found: tuple[int, int]) -> None:
                 f"{path}: its header states {stated[what]} {what}, but the file has {found[1]} "
                 f"lines of {found[0]} values, so a part is missing; export it again"
             )
+
+
+@dataclass(frozen=True)
+class _Axes:
+    """The steps of the axes of x and y, in an unknown unit."""
+
+    x: float
+    y: float
+
+    @property
+    def steps(self) -> str:
+        """The steps in words."""
+        return f"steps of {self.x:.6g} along x and {self.y:.6g} along y, in a unit not stated"
+
+    def notice(self, path: Path) -> str:
+        """What was done with the axes."""
+        return (
+            f"{path}: the first line and the first column are taken for the axes of x and y "
+            f"({self.steps}) and left out of the heights"
+        )
+
+
+def _axes_of(values: Array) -> _Axes | None:
+    """The axes of a matrix of lines; None if its first line and column are heights.
+
+    Both must have even steps, and their neighbours, the first line and column of heights, must not
+    both have them: in a plane, all lines and columns have even steps.
+    """
+    if min(values.shape) <= _LEAST_AXIS:
+        return None
+    x, y = _step(values[0, 1:]), _step(values[1:, 0])
+    if x is None or y is None or (_step(values[1, 1:]) and _step(values[1:, 1])):
+        return None
+    return _Axes(abs(x), abs(y))
+
+
+def _step(points: Array) -> float | None:
+    """The step of evenly spaced points; None if they are uneven, equal or undefined."""
+    if not np.isfinite(points).all():
+        return None
+    steps = np.diff(points)
+    step = float(steps.mean())
+    return step if step and np.abs(steps - step).max() <= _EVEN * abs(step) else None

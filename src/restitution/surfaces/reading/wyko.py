@@ -16,8 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from restitution.errors import SurfaceError
-from restitution.surfaces.reading.decode import decode
-from restitution.surfaces.reading.scan import Y_DOWN, Scan
+from restitution.surfaces.reading.scan import Y_DOWN, Scan, decode
 from restitution.surfaces.surface import Array
 
 WYKO_MAGIC = b"Wyko ASCII Data File Format"
