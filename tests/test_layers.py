@@ -24,7 +24,7 @@ ROOMS = (
     "runs",
     "sweeps",
     "mixtures",
-    "calibration",
+    "fit",
     "dem",
     "api",
     "plots",

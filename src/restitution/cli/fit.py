@@ -8,7 +8,7 @@ import typer
 from restitution.cli.parameters import FigureFormat, Figures, OutFolder
 
 if TYPE_CHECKING:
-    from restitution.calibration.fit import Fit
+    from restitution.fit.fit import Fit
 
 
 def fit(
@@ -42,10 +42,6 @@ def fit(
     figures: Figures = FigureFormat.png,
 ) -> None:
     """Find the values of KEYS in CASE that explain the restitution in MEASURED."""
-    from restitution.calibration import fit as calibration
-    from restitution.calibration.findings import findings
-    from restitution.calibration.fit_files import write_fit
-    from restitution.calibration.measured import read_measured
     from restitution.case.case_file import naming, read_case
     from restitution.cli.console import (
         command,
@@ -57,6 +53,10 @@ def fit(
     )
     from restitution.cli.progress import spinner
     from restitution.display import counted
+    from restitution.fit.findings import findings
+    from restitution.fit.fit import fit as fitted
+    from restitution.fit.fit_files import write_fit
+    from restitution.fit.measured import read_measured
     from restitution.plots.fit import fit_figure
     from restitution.plots.static import write_figure
     from restitution.results.writer import make_folder
@@ -68,9 +68,7 @@ def fit(
     hint_at_kernels()
     try:
         with naming(case), spinner("fitting") as show:
-            found = calibration.fit(
-                text, case.parent, table, names, lambda words: show(f"fitting: {words}")
-            )
+            found = fitted(text, case.parent, table, names, lambda words: show(f"fitting: {words}"))
     except BaseException:
         if new:
             out.rmdir()
@@ -102,7 +100,7 @@ def fit(
 
 def _parameter(found: "Fit", k: int) -> str:
     """The value of a parameter with its intervals: with the model first, then of the data alone."""
-    from restitution.calibration.findings import identifiable, interval_in_words
+    from restitution.fit.findings import identifiable, interval_in_words
 
     parameter, uncertainty = found.parameters[k], found.uncertainty
     value = f"{parameter.key} = {parameter.text(found.factors[k])}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from restitution.calibration.fit import Fit
+from restitution.fit.fit import Fit
 from restitution.plots.cor import IMPACT_VELOCITY, cor_chart
 from restitution.plots.figure import BLUE, ORANGE, Band, Figure, Line, Points, Series
 

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from restitution.calibration.fit import Fit
-from restitution.calibration.least_squares import DISTANCE, RANGE
 from restitution.display import counted
+from restitution.fit.fit import Fit
+from restitution.fit.least_squares import DISTANCE, RANGE
 
 WIDEST = 4.0
 """A parameter is not identifiable if its 95 % interval spans more than this factor."""

@@ -7,12 +7,12 @@ import os
 from pathlib import Path
 from typing import Any
 
-from restitution.calibration.findings import combination, findings, identifiable
-from restitution.calibration.fit import Fit
-from restitution.calibration.measured import DEVIATIONS, RESTITUTION, VELOCITY
-from restitution.calibration.model import velocities_to_run
-from restitution.calibration.uncertainty import CONFIDENCE
 from restitution.case.case_file import parse_toml
+from restitution.fit.findings import combination, findings, identifiable
+from restitution.fit.fit import Fit
+from restitution.fit.measured import DEVIATIONS, RESTITUTION, VELOCITY
+from restitution.fit.model import velocities_to_run
+from restitution.fit.uncertainty import CONFIDENCE
 from restitution.results.interruption import hold_signals
 from restitution.results.writer import (
     replace_file,

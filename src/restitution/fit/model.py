@@ -19,7 +19,6 @@ import numpy as np
 import tomli_w
 from numpy.typing import NDArray
 
-from restitution.calibration.parameters import Parameter, with_factors
 from restitution.case.case import DEPTHS, Case
 from restitution.case.case_file import parse_case
 from restitution.case.derived import deepest_indentation
@@ -31,6 +30,7 @@ from restitution.contact.loading import solve
 from restitution.contact.model_error import model_error
 from restitution.contact.prescribed_velocity import solve_at_velocity
 from restitution.contact.state import State
+from restitution.fit.parameters import Parameter, with_factors
 from restitution.laws.interpolation import RatioCurve
 from restitution.runs.companions import coarser_contact
 from restitution.runs.log import Say, ignore

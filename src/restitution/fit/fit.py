@@ -10,7 +10,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.calibration.least_squares import (
+from restitution.case.case import Case
+from restitution.case.case_file import parse_case, parse_toml
+from restitution.display import counted
+from restitution.errors import CaseError, RestitutionError
+from restitution.fit.least_squares import (
     Data,
     Minimum,
     distinct,
@@ -18,14 +22,10 @@ from restitution.calibration.least_squares import (
     search_widely,
     searches,
 )
-from restitution.calibration.measured import ASSUMED, Measured
-from restitution.calibration.model import Array, CaseModel
-from restitution.calibration.parameters import Parameter, free_parameters
-from restitution.calibration.uncertainty import MODEL_SHARES, Deviations, Uncertainty
-from restitution.case.case import Case
-from restitution.case.case_file import parse_case, parse_toml
-from restitution.display import counted
-from restitution.errors import CaseError, RestitutionError
+from restitution.fit.measured import ASSUMED, Measured
+from restitution.fit.model import Array, CaseModel
+from restitution.fit.parameters import Parameter, free_parameters
+from restitution.fit.uncertainty import MODEL_SHARES, Deviations, Uncertainty
 from restitution.runs.log import Say, ignore
 from restitution.runs.refinement import settled
 from restitution.sweeps.sweep import put

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from restitution.calibration.model import Array, CaseModel, Cost
 from restitution.errors import CaseError, RestitutionError
+from restitution.fit.model import Array, CaseModel, Cost
 
 RANGE = 30.0  # the search covers values from 1/30 to 30 times the first guess
 
