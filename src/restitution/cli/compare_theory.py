@@ -1,78 +1,50 @@
 """`restitution compare-theory`: COR of smooth bodies from published closed-form theories."""
 
+from __future__ import annotations
+
 import math
 import textwrap
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
 
-import typer
 from rich.table import Column, Table
 
-from restitution.cli.parameters import FigureFormat, Figures
+from restitution.case.case_file import naming, read_case
+from restitution.cli.console import (
+    answers,
+    command,
+    print_numbers,
+    say,
+    say_next,
+    say_written,
+    table_of_numbers,
+)
+from restitution.cli.parameters import FigureFormat
+from restitution.display import quantity
 from restitution.errors import CaseError
+from restitution.laws import theories
+from restitution.laws.area_theory import AreaTheory, area_of_case, area_of_results
+from restitution.laws.law_files import read_law, write_theories
+from restitution.laws.theories import Theory
+from restitution.plots.periodic import area_theory_figure
+from restitution.plots.static import write_figure
+from restitution.plots.theories import theory_figure
+from restitution.results.periodic import PeriodicResults
+from restitution.results.tables import is_periodic
 
-if TYPE_CHECKING:
-    from restitution.laws.theories import Theory
 
-
-def compare_theory(
-    case: Annotated[
-        Path,
-        typer.Argument(
-            metavar="CASE",
-            help="Case file (TOML), or the results folder of a periodic contact.",
-            show_default=False,
-            readable=False,
-        ),
-    ],
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            "-o",
-            "--out",
-            metavar="OUT",
-            help="Folder for theory.csv and the figure theory.png; new or empty.",
-            readable=False,
-        ),
-    ] = None,
-    law: Annotated[
-        Path | None,
-        typer.Option(
-            "--law",
-            metavar="LAW",
-            help="Folder that `restitution fit-law` wrote for the same pair; adds the computed "
-            "points of this law.",
-            readable=False,
-        ),
-    ] = None,
-    figures: Figures = FigureFormat.png,
-) -> None:
-    """Print COR against velocity for the smooth bodies of CASE, from closed-form theories.
-
-    For a periodic contact, print its contact area against nominal pressure, from Persson's theory.
-    """
-    from restitution.case.case_file import naming, read_case
-    from restitution.cli.area_theory import compare_area
-    from restitution.cli.console import answers, command, say, say_next, say_written
-    from restitution.laws import theories
-    from restitution.laws.area_theory import area_of_case, area_of_results
-    from restitution.laws.law_files import read_law, write_theories
-    from restitution.plots.static import write_figure
-    from restitution.plots.theories import theory_figure
-    from restitution.results.periodic import PeriodicResults
-    from restitution.results.tables import is_periodic
-
+def compare_theory(case: Path, out: Path | None, law: Path | None, figures: FigureFormat) -> None:
+    """Print theories of the smooth bodies of a case, or of a periodic contact."""
     if case.is_dir() and is_periodic(case):
         _refuse(law)
-        compare_area(area_of_results(PeriodicResults(case)), case, out, figures)
+        _compare_area(area_of_results(PeriodicResults(case)), case, out, figures)
         return
     read, _ = read_case(case)
     if read.periodic:
         _refuse(law)
         with naming(case):
             areas = area_of_case(read, case.parent)
-        compare_area(areas, case, out, figures)
+        _compare_area(areas, case, out, figures)
         return
     points = None if law is None else read_law(law)
     with naming(case):
@@ -119,7 +91,7 @@ def _refuse(law: Path | None) -> None:
         )
 
 
-def _tables(velocities: list[float], found: "list[Theory]", width: int) -> Iterator[Table]:
+def _tables(velocities: list[float], found: list[Theory], width: int) -> Iterator[Table]:
     """Make tables of COR that fit into `width` characters. Each theory is a column of a table."""
     heads = ["\n".join(textwrap.wrap(each.name, 9, break_long_words=False)) for each in found]
     start = 0
@@ -139,3 +111,57 @@ def _tables(velocities: list[float], found: "list[Theory]", width: int) -> Itera
 
 def _width(head: str) -> int:
     return max(map(len, head.split("\n"))) + 2
+
+
+def _compare_area(given: AreaTheory, source: Path, out: Path | None, figures: FigureFormat) -> None:
+    """Print the areas of `given`; write table and figure into `out`, unless it is None.
+
+    `source` is the case file or the results folder.
+    """
+
+    written = []
+    if out is not None:
+        written = [
+            given.write(out),
+            write_figure(out / "theory", area_theory_figure(given), figures.value),
+        ]
+    theory, computed = given.theory, bool((given.computed >= 0).any())
+    slope, E_star = float(theory.rms_slope), float(theory.contact_modulus)
+    say("Relative contact area of the rough surface; a periodic contact has no COR")
+    print_numbers(_area_table(given, computed))
+    say(
+        "persson: erf(√2 p/(E* h′)), B. N. J. Persson, J. Chem. Phys. 115 (2001) 3840; elastic, "
+        "without adhesion"
+    )
+    say(f"  with: rms slope h′ = {slope:.4g}, E* = {quantity(E_star, 'Pa')}")
+    if given.left_out:
+        say(f"  the theory leaves out the {given.left_out} of these bodies")
+    if computed:
+        say(
+            "kappa: computed area divided by p/(E* h′); at low pressure 1.60 in Persson's theory, "
+            "2.51 in that of Bush, Gibson and Thomas (1975)"
+        )
+    if out is not None:
+        say_written(out, [path.name for path in written])
+    if not computed:
+        say_next(
+            f"{command('run', source, '-o', 'RESULTS')}, then "
+            f"{command('compare-theory', 'RESULTS')} (adds computed areas)"
+        )
+
+
+def _area_table(given: AreaTheory, computed: bool) -> Table:
+
+    columns = ["pressure (MPa)", "persson (%)"]
+    if computed:
+        columns += ["computed (%)", "computed/persson", "kappa", "stiffness (MPa/nm)"]
+    table = table_of_numbers(*columns)
+    for p, area, found, kappa, k in zip(
+        given.pressure, given.area, given.computed, given.kappa, given.stiffness, strict=True
+    ):
+        cells = [f"{1e-6 * p:.4g}", f"{100 * area:.4g}"]
+        if computed:
+            cells += [f"{100 * found:.4g}", f"{found / area:.3f}", f"{kappa:.3f}"]
+            cells.append("-" if math.isnan(k) else f"{1e-15 * k:.4g}")
+        table.add_row(*cells)
+    return table

@@ -1,66 +1,31 @@
 """`restitution fit`: find the parameters of a case that explain measured restitution."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
 
-import typer
+from restitution.case.case_file import naming, read_case
+from restitution.cli.console import (
+    command,
+    hint_at_kernels,
+    say,
+    say_next,
+    say_written,
+    spinner,
+    warn,
+)
+from restitution.cli.parameters import FigureFormat
+from restitution.display import counted
+from restitution.fit.findings import findings, identifiable, interval_in_words
+from restitution.fit.fit import Fit
+from restitution.fit.fit import fit as fitted
+from restitution.fit.fit_files import write_fit
+from restitution.fit.measured import read_measured
+from restitution.plots.fit import fit_figure
+from restitution.plots.static import write_figure
+from restitution.results.writer import make_folder
 
-from restitution.cli.parameters import FigureFormat, Figures, OutFolder
 
-if TYPE_CHECKING:
-    from restitution.fit.fit import Fit
-
-
-def fit(
-    measured: Annotated[
-        Path,
-        typer.Argument(
-            metavar="MEASURED",
-            help="CSV file with the columns velocity_m_per_s, restitution and, if known, "
-            "restitution_std.",
-            show_default=False,
-            readable=False,
-        ),
-    ],
-    case: Annotated[
-        Path,
-        typer.Option(
-            "--case",
-            metavar="CASE",
-            help="Case file (TOML); its values of KEYS are the first guesses.",
-            readable=False,
-        ),
-    ],
-    free: Annotated[
-        list[str],
-        typer.Option(
-            metavar="KEYS",
-            help="Keys of CASE to be fitted, separated by commas, such as yield_strength,rms.",
-        ),
-    ],
-    out: OutFolder,
-    figures: Figures = FigureFormat.png,
-) -> None:
-    """Find the values of KEYS in CASE that explain the restitution in MEASURED."""
-    from restitution.case.case_file import naming, read_case
-    from restitution.cli.console import (
-        command,
-        hint_at_kernels,
-        say,
-        say_next,
-        say_written,
-        warn,
-    )
-    from restitution.cli.progress import spinner
-    from restitution.display import counted
-    from restitution.fit.findings import findings
-    from restitution.fit.fit import fit as fitted
-    from restitution.fit.fit_files import write_fit
-    from restitution.fit.measured import read_measured
-    from restitution.plots.fit import fit_figure
-    from restitution.plots.static import write_figure
-    from restitution.results.writer import make_folder
-
+def fit(measured: Path, case: Path, free: list[str], out: Path, figures: FigureFormat) -> None:
+    """Fit the keys `free` of a case, and write and print the fit."""
     names = [name.strip() for part in free for name in part.split(",") if name.strip()]
     table = read_measured(measured)
     _, text = read_case(case)
@@ -100,7 +65,6 @@ def fit(
 
 def _parameter(found: "Fit", k: int) -> str:
     """The value of a parameter with its intervals: with the model first, then of the data alone."""
-    from restitution.fit.findings import identifiable, interval_in_words
 
     parameter, uncertainty = found.parameters[k], found.uncertainty
     value = f"{parameter.key} = {parameter.text(found.factors[k])}"

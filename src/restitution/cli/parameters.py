@@ -1,6 +1,6 @@
-"""Arguments and options that several commands share.
+"""Arguments and options that several verbs share.
 
-In the help, OUT stands for a folder that a command writes, and FILE for a single file. Most inputs
+In the help, OUT stands for a folder that a verb writes, and FILE for a single file. Most inputs
 have a placeholder that says what they contain, such as CASE or RESULTS.
 """
 
@@ -32,36 +32,30 @@ def one_of(words: type[StrEnum], *names: str, **more: Any) -> Any:
     return typer.Option(*names, parser=parse, autocompletion=complete, **more)
 
 
-class Device(StrEnum):
-    """Devices that solves can run on."""
-
-    cpu = "cpu"
-    gpu = "gpu"
-    auto = "auto"
+def given(metavar: str, help_text: str) -> Any:
+    """Make an argument for a path without a default."""
+    return typer.Argument(metavar=metavar, help=help_text, show_default=False, readable=False)
 
 
-class FigureFormat(StrEnum):
-    """File formats of figures."""
-
-    png = "png"
-    svg = "svg"
-    pdf = "pdf"
+def output(metavar: str, help_text: str, **more: Any) -> Any:
+    """Make the option for a file or folder that a verb writes."""
+    return typer.Option("-o", "--out", metavar=metavar, help=help_text, readable=False, **more)
 
 
-CaseFile = Annotated[
-    Path,
-    typer.Argument(metavar="CASE", help="Case file (TOML).", show_default=False, readable=False),
-]
-OutFolder = Annotated[
-    Path,
-    typer.Option(
-        "-o", "--out", metavar="OUT", help="Folder for the results; new or empty.", readable=False
-    ),
-]
+DeviceName = StrEnum("DeviceName", ["cpu", "gpu", "auto"])
+FigureFormat = StrEnum("FigureFormat", ["png", "svg", "pdf"])
+# DEM codes and formats to which laws can be exported.
+ExportFormat = StrEnum(
+    "ExportFormat", ["lammps", "liggghts", "yade", "mercurydpm", "edem", "mujoco", "drake", "csv"]
+)
+
+CaseFile = Annotated[Path, given("CASE", "Case file (TOML).")]
+OutFolder = Annotated[Path, output("OUT", "Folder for the results; new or empty.")]
 OnDevice = Annotated[
-    Device,
+    DeviceName,
     one_of(
-        Device,
+        DeviceName,
+        "--device",
         help="Device for the solves; auto uses a GPU if one is available. A GPU needs CuPy.",
     ),
 ]
@@ -72,9 +66,10 @@ Scheduler = Annotated[
         metavar="ADDRESS", help="Compute on the Dask cluster with this scheduler (tcp://…)."
     ),
 ]
-Workers = Annotated[
+WorkerCount = Annotated[
     int | None,
     typer.Option(
+        "--workers",
         min=1,
         metavar="N",
         help="Number of processes on this machine.",

@@ -1,34 +1,23 @@
-"""`restitution compare`: differences between two results."""
+"""`restitution report` and `restitution compare`: stored results."""
 
 from pathlib import Path
-from typing import Annotated
 
-import typer
+from rich.markup import escape
 from rich.table import Column, Table
 
+from restitution.cli.console import answers, say, say_written
+from restitution.pages.report import write_report
+from restitution.results.compare import compare as compared
+from restitution.results.writer import require_new_file, write_table
 
-def compare(
-    a: Annotated[
-        Path, typer.Argument(help="Results folder of a run or study.", metavar="A", readable=False)
-    ],
-    b: Annotated[
-        Path,
-        typer.Argument(help="Results folder of the same kind as A.", metavar="B", readable=False),
-    ],
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            "-o", "--out", metavar="FILE", help="New CSV file for the table.", readable=False
-        ),
-    ] = None,
-) -> None:
-    """Print the differences between the results in A and B, and the errors of the differences."""
-    from rich.markup import escape
 
-    from restitution.cli.console import answers, say
-    from restitution.results.compare import compare as compared
-    from restitution.results.writer import require_new_file, write_table
+def report(results: Path) -> None:
+    """Write the page of stored results."""
+    say_written(write_report(results))
 
+
+def compare(a: Path, b: Path, out: Path | None) -> None:
+    """Print (and write to the file `out`) the differences between two results."""
     found = compared(a, b)
     require_new_file(out)
     if out is not None:

@@ -1,47 +1,34 @@
-"""`restitution fit-law`: COR against impact velocity, and the force laws fitted to it."""
+"""`restitution fit-law` and `restitution export`: restitution laws."""
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
 
-import typer
 from rich.table import Column, Table
 
-from restitution.cli.parameters import FigureFormat, Figures
+from restitution.cli.console import (
+    answers,
+    command,
+    say,
+    say_next,
+    say_written,
+    spinner,
+    warn,
+    warn_once,
+)
+from restitution.cli.parameters import ExportFormat, FigureFormat
+from restitution.dem.export import export as exported
+from restitution.dem.export import limit, unset, write_export
+from restitution.laws.force_law_fits import too_few_points
+from restitution.laws.from_results import law_of
+from restitution.laws.law import LOSS, FittedLaw, Law, velocity_of
+from restitution.laws.law_files import read_laws, write_law
+from restitution.plots.law import law_figure
+from restitution.plots.static import write_figure
 
-if TYPE_CHECKING:
-    from restitution.laws.law import FittedLaw, Law
 
-
-def fit_law(
-    results: Annotated[
-        Path,
-        typer.Argument(
-            metavar="RESULTS",
-            help="Results folder of a run, ensemble or convergence study.",
-            show_default=False,
-            readable=False,
-        ),
-    ],
-    out: Annotated[
-        Path,
-        typer.Option(
-            "-o", "--out", metavar="OUT", help="Folder for the law; new or empty.", readable=False
-        ),
-    ],
-    figures: Figures = FigureFormat.png,
-) -> None:
-    """Write the restitution law of RESULTS to OUT: table, compact fit and fitted force laws."""
-    from restitution.cli.console import answers, command, say, say_next, say_written, warn
-    from restitution.cli.progress import spinner
-
+def fit_law(results: Path, out: Path, figures: FigureFormat) -> None:
+    """Make, write and print the law of stored results."""
     with spinner("reading the results") as show:
-        from restitution.laws.force_law_fits import too_few_points
-        from restitution.laws.from_results import law_of
-        from restitution.laws.law_files import write_law
-        from restitution.plots.law import law_figure
-        from restitution.plots.static import write_figure
-
         found = law_of(results, lambda name, k, n: show(f"fitting {name} ({k} of {n})"))
         written = write_law(found, out)
         show("drawing the figure")
@@ -71,7 +58,6 @@ def fit_law(
 
 
 def _in_words(law: "Law") -> Iterator[str]:
-    from restitution.laws.law import LOSS
 
     if law.sticks_below is not None:
         yield f"sticks below {law.sticking}"
@@ -103,3 +89,27 @@ def _table(laws: "tuple[FittedLaw, ...]") -> Table:
             parameters += f"; pull-off force within {100 * each.pull_off_misfit:.2g} %"
         table.add_row(each.name, parameters, f"{each.rms:.3f}", f"{each.worst:.3f}")
     return table
+
+
+def export(laws: list[Path], to: ExportFormat, out: Path, velocity: str | None) -> None:
+    """Write laws as the input of a DEM code."""
+    read = read_laws(laws)
+    at = None if velocity is None else velocity_of(velocity)
+    texts = exported(read, to.value, at)
+    with warn_once() as warn:
+        for law in read:
+            for warning in law.warnings:
+                warn(warning, law.pair)
+            if at is not None and not law.at(at).resolved:
+                warn(
+                    f"the grid does not resolve the contact at {at:g} m/s; the files note this",
+                    law.pair,
+                )
+    written = write_export(texts, out)
+    if at is not None:
+        for law in read:
+            found = law.at(at)
+            say(f"{law.pair}: COR {found.restitution:.4f} ± {found.error:.2g} at {at:g} m/s")
+    for note in filter(None, (*unset(read, to.value), limit(to.value))):
+        say(note)
+    say_written(out, [path.name for path in written])
