@@ -42,8 +42,22 @@ def output(metavar: str, help_text: str, **more: Any) -> Any:
     return typer.Option("-o", "--out", metavar=metavar, help=help_text, readable=False, **more)
 
 
-DeviceName = StrEnum("DeviceName", ["cpu", "gpu", "auto"])
-FigureFormat = StrEnum("FigureFormat", ["png", "svg", "pdf"])
+class DeviceName(StrEnum):
+    """Devices that solves can run on."""
+
+    cpu = "cpu"
+    gpu = "gpu"
+    auto = "auto"
+
+
+class FigureFormat(StrEnum):
+    """File formats of figures."""
+
+    png = "png"
+    svg = "svg"
+    pdf = "pdf"
+
+
 # DEM codes and formats to which laws can be exported.
 ExportFormat = StrEnum(
     "ExportFormat", ["lammps", "liggghts", "yade", "mercurydpm", "edem", "mujoco", "drake", "csv"]
