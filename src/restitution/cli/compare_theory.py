@@ -26,9 +26,9 @@ from restitution.laws import theories
 from restitution.laws.area_theory import AreaTheory, area_of_case, area_of_results
 from restitution.laws.law_files import read_law, write_theories
 from restitution.laws.theories import Theory
+from restitution.plots.law import theory_figure
 from restitution.plots.periodic import area_theory_figure
 from restitution.plots.static import write_figure
-from restitution.plots.theories import theory_figure
 from restitution.results.periodic import PeriodicResults
 from restitution.results.tables import is_periodic
 

@@ -24,8 +24,6 @@ from rich.table import Column, Table
 
 from restitution.display import counted, some_of, without_numbers
 from restitution.errors import one_line
-from restitution.numerics import kernels
-from restitution.numerics.convolution.device import CPU, current
 
 answers = Console(highlight=False)
 errors = Console(stderr=True, highlight=False)
@@ -107,7 +105,11 @@ def print_error(message: str) -> None:
 @cache
 def hint_at_kernels() -> None:
     """Print a hint on standard error if solves are slow because compiled kernels are missing."""
-    if current() is CPU and (why := kernels.missing()):
+    # Kernels that do not exist are an error of this import, which this module prints.
+    from restitution.numerics.convolution.device import CPU, current
+    from restitution.numerics.kernels import missing
+
+    if current() is CPU and (why := missing()):
         say(f"Hint: {why}", errors)
 
 

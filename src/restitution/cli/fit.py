@@ -19,7 +19,7 @@ from restitution.fit.fit import Fit
 from restitution.fit.fit import fit as fitted
 from restitution.fit.fit_files import write_fit
 from restitution.fit.measured import read_measured
-from restitution.plots.fit import fit_figure
+from restitution.plots.law import fit_figure
 from restitution.plots.static import write_figure
 from restitution.results.writer import make_folder
 

@@ -25,7 +25,7 @@ from restitution.mixtures.mixture_folder import (
     open_mixture_folder,
     write_mixture,
 )
-from restitution.plots.mixture import mixture_figure
+from restitution.plots.law import mixture_figure
 from restitution.plots.static import write_figure
 from restitution.reproduce.report import write_reproduction
 from restitution.reproduce.studies import NAMES, Size, bundled

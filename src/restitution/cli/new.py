@@ -7,7 +7,6 @@ from string import Template
 from restitution.cli.console import command, errors, say_next, say_written
 from restitution.errors import CaseError
 from restitution.results.writer import require_new_file, writing
-from restitution.runs.powder import powder_grid
 
 # The values of a powder that `--set` replaces.
 _POWDER = {
@@ -42,6 +41,8 @@ def new(
 
 
 def _powder(template: str, given: list[str]) -> str:
+    from restitution.runs.powder import powder_grid  # loads the solver
+
     values = dict(_POWDER)
     for item in given:
         key, equals, value = (part.strip() for part in item.partition("="))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -13,13 +14,12 @@ from numpy.typing import NDArray
 from restitution.case.omissions import default_yield
 from restitution.contact.checks.resolution import NODES_PER_PATCH
 from restitution.pages.methods import methods
-from restitution.pages.oblique import oblique_drawing
 from restitution.pages.page import Cell, Drawing, Listing, Page, Table, write_page
 from restitution.plots.cor import Abscissa
-from restitution.plots.depth_maps import depth_maps_figure
-from restitution.plots.oblique import has_oblique
+from restitution.plots.oblique import has_oblique, oblique_figure
 from restitution.plots.run import (
     abscissae,
+    depth_maps_figure,
     has_map,
     load_displacement,
     pressure_map,
@@ -38,7 +38,7 @@ def write_run_page(out: Path) -> Path:
     if results.sizes["indentation_max"]:
         parts += [_restitution(results, abscissa) for abscissa in abscissae(results)]
         if run.oblique and has_oblique(results):
-            parts.append(oblique_drawing(results, run.oblique))
+            parts.append(_oblique_drawing(results, run.oblique))
         parts.append(_force(results))
         if has_map(results):
             parts.append(_pressure(results))
@@ -210,3 +210,56 @@ def _cell(value: Any) -> Cell:
     if isinstance(value, bool) or not isinstance(value, (int, float, type(None))):
         return str(value)
     return value
+
+
+_NOTE = (
+    "Tangential restitution and angles refer to the velocity of the centres. Spins are positive in "
+    "the direction in which friction turns a body without spin. The dotted line marks the angle "
+    "from which the whole contact slides. The error of the tangential restitution e_t includes the "
+    "errors of the tangential law and of the normal restitution e_n."
+)
+
+
+def _oblique_drawing(results: xr.Dataset, rows: list[dict[str, float]]) -> Drawing:
+    """Draw the oblique impacts in `results`, with a table of their `rows`."""
+    known = [e_t for row in rows if not math.isnan(e_t := row["tangential_restitution"])]
+    ends = f"from {min(known):.3f} to {max(known):.3f} " if known else ""
+    cells: list[list[Cell]] = [
+        [
+            row["impact_velocity_m_per_s"],
+            math.degrees(row["angle_rad"]),
+            row["normal_restitution"],
+            row["tangential_restitution"],
+            row.get("tangential_restitution_error", math.nan),
+            math.degrees(row["rebound_angle_rad"]),
+            row["first_spin_rad_per_s"],
+            row["second_spin_rad_per_s"],
+            row["friction_loss_J"],
+            row["normal_loss_J"],
+            "yes" if row["slides"] else "no",
+        ]
+        for row in rows
+    ]
+    return Drawing(
+        "Oblique impacts",
+        oblique_figure(results),
+        f"Tangential restitution {ends}against the angle of impact, angle of rebound and spin",
+        _NOTE,
+        Table(
+            "Oblique impacts",
+            [
+                "velocity (m/s)",
+                "angle (°)",
+                "e_n",
+                "e_t",
+                "± e_t",
+                "rebound (°)",
+                "first spin (rad/s)",
+                "second spin (rad/s)",
+                "friction loss (J)",
+                "normal loss (J)",
+                "slides",
+            ],
+            cells,
+        ),
+    )
