@@ -51,25 +51,25 @@ def compare_theory(case: Path, out: Path | None, law: Path | None, figures: Figu
         if points is not None:
             theories.check_same_pair(read, points)
         velocities = theories.velocities_of(read, points)
-        found = theories.theories(read, velocities, points)
+        curves = theories.theories(read, velocities, points)
         missing = theories.left_out(read, points)
     written = []
     if out is not None:
-        lines = theories.theory_lines(read, velocities, found)
+        lines = theories.theory_lines(read, velocities, curves)
         figure = theory_figure(read.title, lines, theories.marks(read), points)
         written += [
-            write_theories(velocities, found, out),
+            write_theories(velocities, curves, out),
             write_figure(out / "theory", figure, figures.value),
         ]
 
     say('COR of the smooth bodies at impact velocities (m/s); "-": outside the range of a theory')
-    for table in _tables(velocities.tolist(), found, answers.width):
+    for table in _tables(velocities.tolist(), curves, answers.width):
         answers.print(table)
-    for each in found:
-        say(f"{each.name}: {each.source}")
-        say(f"  holds: {each.holds}")
-        if each.parameters:
-            values = ", ".join(f"{name} {value:.4g}" for name, value in each.parameters.items())
+    for curve in curves:
+        say(f"{curve.name}: {curve.source}")
+        say(f"  holds: {curve.holds}")
+        if curve.parameters:
+            values = ", ".join(f"{name} {value:.4g}" for name, value in curve.parameters.items())
             say(f"  with: {values}")
     for reason in dict.fromkeys(missing.values()):
         names = ", ".join(name for name, why in missing.items() if why == reason)
@@ -91,19 +91,19 @@ def _refuse(law: Path | None) -> None:
         )
 
 
-def _tables(velocities: list[float], found: list[Theory], width: int) -> Iterator[Table]:
+def _tables(velocities: list[float], curves: list[Theory], width: int) -> Iterator[Table]:
     """Make tables of COR that fit into `width` characters. Each theory is a column of a table."""
-    heads = ["\n".join(textwrap.wrap(each.name, 9, break_long_words=False)) for each in found]
+    heads = ["\n".join(textwrap.wrap(curve.name, 9, break_long_words=False)) for curve in curves]
     start = 0
-    while start < len(found):
+    while start < len(curves):
         end, left = start, width - 11  # 11 characters for the column of velocities
-        while end < len(found) and (end == start or left >= _width(heads[end])):
+        while end < len(curves) and (end == start or left >= _width(heads[end])):
             left -= _width(heads[end])
             end += 1
         columns = (Column(h, justify="right", no_wrap=True) for h in ("m/s", *heads[start:end]))
         table = Table(*columns, box=None, header_style="bold", pad_edge=False)
         for k, V in enumerate(velocities):
-            cells = (float(each.restitution[k]) for each in found[start:end])
+            cells = (float(curve.restitution[k]) for curve in curves[start:end])
             table.add_row(f"{V:.4g}", *("-" if math.isnan(e) else f"{e:.4f}" for e in cells))
         yield table
         start = end
@@ -113,7 +113,7 @@ def _width(head: str) -> int:
     return max(map(len, head.split("\n"))) + 2
 
 
-def _compare_area(given: AreaTheory, source: Path, out: Path | None, figures: FigureFormat) -> None:
+def _compare_area(areas: AreaTheory, source: Path, out: Path | None, figures: FigureFormat) -> None:
     """Print the areas of `given`; write table and figure into `out`, unless it is None.
 
     `source` is the case file or the results folder.
@@ -122,20 +122,20 @@ def _compare_area(given: AreaTheory, source: Path, out: Path | None, figures: Fi
     written = []
     if out is not None:
         written = [
-            given.write(out),
-            write_figure(out / "theory", area_theory_figure(given), figures.value),
+            areas.write(out),
+            write_figure(out / "theory", area_theory_figure(areas), figures.value),
         ]
-    theory, computed = given.theory, bool((given.computed >= 0).any())
+    theory, computed = areas.theory, bool((areas.computed >= 0).any())
     slope, E_star = float(theory.rms_slope), float(theory.contact_modulus)
     say("Relative contact area of the rough surface; a periodic contact has no COR")
-    print_numbers(_area_table(given, computed))
+    print_numbers(_area_table(areas, computed))
     say(
         "persson: erf(√2 p/(E* h′)), B. N. J. Persson, J. Chem. Phys. 115 (2001) 3840; elastic, "
         "without adhesion"
     )
     say(f"  with: rms slope h′ = {slope:.4g}, E* = {quantity(E_star, 'Pa')}")
-    if given.left_out:
-        say(f"  the theory leaves out the {given.left_out} of these bodies")
+    if areas.left_out:
+        say(f"  the theory leaves out the {areas.left_out} of these bodies")
     if computed:
         say(
             "kappa: computed area divided by p/(E* h′); at low pressure 1.60 in Persson's theory, "
@@ -150,18 +150,18 @@ def _compare_area(given: AreaTheory, source: Path, out: Path | None, figures: Fi
         )
 
 
-def _area_table(given: AreaTheory, computed: bool) -> Table:
+def _area_table(areas: AreaTheory, computed: bool) -> Table:
 
     columns = ["pressure (MPa)", "persson (%)"]
     if computed:
         columns += ["computed (%)", "computed/persson", "kappa", "stiffness (MPa/nm)"]
     table = table_of_numbers(*columns)
-    for p, area, found, kappa, k in zip(
-        given.pressure, given.area, given.computed, given.kappa, given.stiffness, strict=True
+    for p, area, computed_area, kappa, k in zip(
+        areas.pressure, areas.area, areas.computed, areas.kappa, areas.stiffness, strict=True
     ):
         cells = [f"{1e-6 * p:.4g}", f"{100 * area:.4g}"]
         if computed:
-            cells += [f"{100 * found:.4g}", f"{found / area:.3f}", f"{kappa:.3f}"]
+            cells += [f"{100 * computed_area:.4g}", f"{computed_area / area:.3f}", f"{kappa:.3f}"]
             cells.append("-" if math.isnan(k) else f"{1e-15 * k:.4g}")
         table.add_row(*cells)
     return table

@@ -33,47 +33,49 @@ def fit(measured: Path, case: Path, free: list[str], out: Path, figures: FigureF
     hint_at_kernels()
     try:
         with naming(case), spinner("fitting") as show:
-            found = fitted(text, case.parent, table, names, lambda words: show(f"fitting: {words}"))
+            result = fitted(
+                text, case.parent, table, names, lambda words: show(f"fitting: {words}")
+            )
     except BaseException:
         if new:
             out.rmdir()
         raise
     written = [
-        *write_fit(found, text, out),
-        write_figure(out / "fit", fit_figure(found), figures.value),
+        *write_fit(result, text, out),
+        write_figure(out / "fit", fit_figure(result), figures.value),
     ]
-    for k in range(found.x.size):
-        say(_parameter(found, k))
-    rms = float((found.residuals**2).mean() ** 0.5)
+    for k in range(result.x.size):
+        say(_parameter(result, k))
+    rms = float((result.residuals**2).mean() ** 0.5)
     say(
-        f"{counted(found.measured.velocity.size, 'point')}, rms residual of COR {rms:.2g}, "
-        f"{counted(found.model.evaluations, 'curve')} computed"
+        f"{counted(result.measured.velocity.size, 'point')}, rms residual of COR {rms:.2g}, "
+        f"{counted(result.model.evaluations, 'curve')} computed"
     )
     if table.deviation is None:
-        noise = (float((found.residuals**2).sum()) / found.freedom) ** 0.5
+        noise = (float((result.residuals**2).sum()) / result.freedom) ** 0.5
         say(
             "MEASURED has no column restitution_std: every point is assumed to have the standard "
             f"deviation {noise:.2g}, estimated from the residuals"
         )
     if above := int((table.restitution > 1).sum()):
         say(f"{above} of the measured COR are above 1; they are not cut, which would bias the fit")
-    for sentence in findings(found):
+    for sentence in findings(result):
         warn(sentence)
     say_written(out, [path.name for path in written])
     say_next(command("run", out / "case.toml", "-o", "RESULTS"))
 
 
-def _parameter(found: "Fit", k: int) -> str:
+def _parameter(result: "Fit", k: int) -> str:
     """The value of a parameter with its intervals: with the model first, then of the data alone."""
 
-    parameter, uncertainty = found.parameters[k], found.uncertainty
-    value = f"{parameter.key} = {parameter.text(found.factors[k])}"
-    if not identifiable(found, k):
+    parameter, uncertainty = result.parameters[k], result.uncertainty
+    value = f"{parameter.key} = {parameter.text(result.factors[k])}"
+    if not identifiable(result, k):
         return f"{value}, not identifiable"
     place = f"{100 * uncertainty.by_one_place[k]:.2g} %"
     lines = [
-        f"{value}, 95 % interval {interval_in_words(found, k, model=True)} (data and model)",
-        f"  of the data alone: {interval_in_words(found, k)}",
+        f"{value}, 95 % interval {interval_in_words(result, k, model=True)} (data and model)",
+        f"  of the data alone: {interval_in_words(result, k)}",
     ]
     if uncertainty.by_one_place[k] > 0:
         lines.append(f"  if all impacts hit one place: ± {place}, one standard deviation")

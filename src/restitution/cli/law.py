@@ -29,30 +29,26 @@ from restitution.plots.static import write_figure
 def fit_law(results: Path, out: Path, figures: FigureFormat) -> None:
     """Make, write and print the law of stored results."""
     with spinner("reading the results") as show:
-        found = law_of(results, lambda name, k, n: show(f"fitting {name} ({k} of {n})"))
-        written = write_law(found, out)
+        law = law_of(results, lambda name, k, n: show(f"fitting {name} ({k} of {n})"))
+        written = write_law(law, out)
         show("drawing the figure")
-        written.append(write_figure(out / "law", law_figure(found), figures.value))
-    for warning in filter(None, (*found.warnings, too_few_points(found))):
+        written.append(write_figure(out / "law", law_figure(law), figures.value))
+    for warning in filter(None, (*law.warnings, too_few_points(law))):
         warn(warning)
-    say(
-        f"{found.pair}: {len(found.points)} velocities, {found.lowest:.4g} to "
-        f"{found.highest:.4g} m/s"
-    )
-    for line in _in_words(found):
+    say(f"{law.pair}: {len(law.points)} velocities, {law.lowest:.4g} to {law.highest:.4g} m/s")
+    for line in _in_words(law):
         say(line)
-    if found.laws:
-        answers.print(_table(found.laws))
-    if found.laws:
+    if law.laws:
+        answers.print(_table(law.laws))
         say(
             "The columns rms and worst state how far the fitted laws differ from COR. COR itself "
-            f"has an error of up to {max(point.error for point in found.points):.2g}."
+            f"has an error of up to {max(point.error for point in law.points):.2g}."
         )
-    say(f"The error of COR includes {found.conventions.restitution_error}.")
+    say(f"The error of COR includes {law.conventions.restitution_error}.")
     say_written(out, [path.name for path in written])
-    if found.sticks_everywhere:
+    if law.sticks_everywhere:
         return
-    middle = (max(found.lowest, found.sticks_below or 0.0) * found.highest) ** 0.5
+    middle = (max(law.lowest, law.sticks_below or 0.0) * law.highest) ** 0.5
     speed = f"{middle:.2g} m/s"
     say_next(command("export", out, "--to", "lammps", "--velocity", speed, "-o", "OUT"))
 
@@ -83,11 +79,11 @@ def _table(laws: "tuple[FittedLaw, ...]") -> Table:
         box=None,
         header_style="bold",
     )
-    for each in laws:
-        parameters = ", ".join(f"{name} {value:.4g}" for name, value in each.parameters.items())
-        if each.pull_off_misfit is not None:
-            parameters += f"; pull-off force within {100 * each.pull_off_misfit:.2g} %"
-        table.add_row(each.name, parameters, f"{each.rms:.3f}", f"{each.worst:.3f}")
+    for fit in laws:
+        parameters = ", ".join(f"{name} {value:.4g}" for name, value in fit.parameters.items())
+        if fit.pull_off_misfit is not None:
+            parameters += f"; pull-off force within {100 * fit.pull_off_misfit:.2g} %"
+        table.add_row(fit.name, parameters, f"{fit.rms:.3f}", f"{fit.worst:.3f}")
     return table
 
 
@@ -108,8 +104,8 @@ def export(laws: list[Path], to: ExportFormat, out: Path, velocity: str | None) 
     written = write_export(texts, out)
     if at is not None:
         for law in read:
-            found = law.at(at)
-            say(f"{law.pair}: COR {found.restitution:.4f} ± {found.error:.2g} at {at:g} m/s")
+            point = law.at(at)
+            say(f"{law.pair}: COR {point.restitution:.4f} ± {point.error:.2g} at {at:g} m/s")
     for note in filter(None, (*unset(read, to.value), limit(to.value))):
         say(note)
     say_written(out, [path.name for path in written])

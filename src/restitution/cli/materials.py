@@ -37,14 +37,14 @@ def materials(name: str | None, *, adhesion: bool, json: bool) -> None:
     if adhesion:
         _show_pairs(name, json)
         return
-    found = library() if name is None else {(known := material(name)).key: known}
+    shown = library() if name is None else {(known := material(name)).key: known}
     if json:
-        answers.print_json(data={key: each.model_dump() for key, each in found.items()})
+        answers.print_json(data={key: entry.model_dump() for key, entry in shown.items()})
     elif name is None:
-        table = _list(found)
+        table = _list(shown)
         natural = answers.measure(table, options=answers.options.update(width=_WIDEST)).maximum
         if natural > answers.width:  # each material fits into one line without its long name
-            table = _list(found, names=False)
+            table = _list(shown, names=False)
         print_numbers(table)
         say_next(command("materials", "NAME") + " (spread and sources)")
     else:
@@ -80,15 +80,15 @@ def _show_pairs(name: str | None, json: bool) -> None:
     )
 
 
-def _list(found: dict[str, Material], *, names: bool = True) -> Table:
+def _list(shown: dict[str, Material], *, names: bool = True) -> Table:
     listed = {key: row for key, row in _QUANTITIES.items() if key != "surface_energy"}
     heads = [f"{symbol} ({unit})" if unit else symbol for _, symbol, _, unit in listed.values()]
     material = [Column("material", no_wrap=True)] if names else []
     table = table_of_numbers(Column("name", no_wrap=True), *heads, *material)
-    for key, each in found.items():
-        known = ((getattr(each, name), scale) for name, (_, _, scale, _) in listed.items())
+    for key, entry in shown.items():
+        known = ((getattr(entry, name), scale) for name, (_, _, scale, _) in listed.items())
         cells = ("-" if of is None else f"{scale * of.value:.5g}" for of, scale in known)
-        table.add_row(key, *cells, *([each.name] if names else []))
+        table.add_row(key, *cells, *([entry.name] if names else []))
     return table
 
 

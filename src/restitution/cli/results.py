@@ -18,22 +18,26 @@ def report(results: Path) -> None:
 
 def compare(a: Path, b: Path, out: Path | None) -> None:
     """Print (and write to the file `out`) the differences between two results."""
-    found = compared(a, b)
+    comparison = compared(a, b)
     require_new_file(out)
     if out is not None:
-        write_table(out, found.rows)
-    if found.inputs:
+        write_table(out, comparison.rows)
+    if comparison.inputs:
         heads = (Column(name, overflow="fold") for name in ("input", "A", "B"))
         inputs = Table(*heads, box=None, header_style="bold")
-        for differing in found.inputs:
+        for differing in comparison.inputs:
             inputs.add_row(*(escape(cell) for cell in differing))
         answers.print(inputs)
         answers.print()
-    swept = [key for key in (found.rows[0] if found.rows else {}) if "." in key or key == "title"]
+    swept = [
+        key
+        for key in (comparison.rows[0] if comparison.rows else {})
+        if "." in key or key == "title"
+    ]
     names = ("indentation (nm)", "COR A", "COR B", "difference", "error", "force B/A", "")
     numbers = (Column(name, justify="right") for name in names)
     table = Table(*map(escape, swept), *numbers, box=None, header_style="bold")
-    for row in found.rows:
+    for row in comparison.rows:
         marks = ("" if row["significant"] else "within error") if row["resolved"] else "unresolved"
         table.add_row(
             *(escape(row[key]) for key in swept),
@@ -46,10 +50,10 @@ def compare(a: Path, b: Path, out: Path | None) -> None:
             marks,
         )
     answers.print(table)
-    if found.rows:
-        worst = max(found.rows, key=lambda row: abs(row["difference"]))
+    if comparison.rows:
+        worst = max(comparison.rows, key=lambda row: abs(row["difference"]))
         answers.print(f"largest difference of COR {worst['difference']:+.4f}")
     else:
         answers.print("The results have no depth in common.")
-    for note in found.notes:
+    for note in comparison.notes:
         say(f"Note: {note}")

@@ -40,23 +40,23 @@ def simulate(
         "V (m/s)", "COR", "error", "by energies", "time (s)", "force (N)", "depth (nm)"
     )
     courses, blended = [], False
-    for each in velocities:
-        found, energies = collide_in_time(force, each), law.at(each)
+    for speed in velocities:
+        collision, energies = collide_in_time(force, speed), law.at(speed)
         # Errors of the force curves change the simulated COR, but not the COR from the stored
         # energies. The difference between these two COR estimates the effect of such errors. The
         # printed error is at least the error of the COR from the stored energies.
-        error = max(abs(found.restitution - energies.restitution), energies.error)
-        courses += course(found)
+        error = max(abs(collision.restitution - energies.restitution), energies.error)
+        courses += course(collision)
         table.add_row(
-            f"{each:.4g}",
-            f"{found.restitution:.5f}",
+            f"{speed:.4g}",
+            f"{collision.restitution:.5f}",
             f"± {error:.5f}",
             f"{energies.restitution:.5f}",
-            f"{found.duration:.4g}",
-            f"{found.largest_force:.4g}",
-            f"{1e9 * found.largest_indentation:.4g}",
+            f"{collision.duration:.4g}",
+            f"{collision.largest_force:.4g}",
+            f"{1e9 * collision.largest_indentation:.4g}",
         )
-        blended |= found.blended
+        blended |= collision.blended
     if out is not None:
         write_table(out, courses)
     print_numbers(table)
@@ -117,18 +117,19 @@ def _oblique(
     )
     courses = []
     for speed in fast:
-        for each in at:
-            found = oblique.collide_obliquely(force, speed, each, friction, (first, second))
-            courses += oblique.course(found)
+        for slope in at:
+            collision = oblique.collide_obliquely(force, speed, slope, friction, (first, second))
+            courses += oblique.course(collision)
+            e_t, error = collision.tangential_restitution, collision.tangential_restitution_error
             table.add_row(
-                f"{found.velocity:.4g}",
-                f"{math.degrees(each):.4g}",
-                f"{found.normal_restitution:.4f}",
-                f"{found.tangential_restitution:.3f} ± {found.tangential_restitution_error:.3f}",
-                f"{math.degrees(found.rebound_angle):.2f}",
-                ", ".join(f"{spin:.5g}" for spin in found.spins),
-                f"{found.friction_loss:.4g}",
-                "full" if found.sliding else "part",
+                f"{collision.velocity:.4g}",
+                f"{math.degrees(slope):.4g}",
+                f"{collision.normal_restitution:.4f}",
+                f"{e_t:.3f} ± {error:.3f}",
+                f"{math.degrees(collision.rebound_angle):.2f}",
+                ", ".join(f"{spin:.5g}" for spin in collision.spins),
+                f"{collision.friction_loss:.4g}",
+                "full" if collision.sliding else "part",
             )
     print_numbers(table)
     say(

@@ -7,6 +7,8 @@ import os
 from pathlib import Path
 from typing import Any
 
+import tomli_w
+
 from restitution.case.case_file import parse_toml
 from restitution.fit.findings import combination, findings, identifiable
 from restitution.fit.fit import Fit
@@ -26,38 +28,31 @@ _DIGITS = 8  # number of significant digits of fitted values in the case file
 _NAMES = ("fit.json", "fit.csv", "case.toml")
 
 
-def write_fit(found: Fit, text: str, out: Path) -> list[Path]:
-    """Write the output files of a fit into `out`; `text` is the case file with the first guesses.
-
-    Raises `OutputError`.
-    """
-    case = fitted_case(found, out)
+def write_fit(fit: Fit, text: str, out: Path) -> list[Path]:
+    """Write the files of a fit into `out`; `text` is the case file with the first guesses."""
+    case = fitted_case(fit, out)
     with hold_signals():
-        write_json(out / "fit.json", _summary(found, text))
-        write_table(out / "fit.csv", fit_rows(found))
+        write_json(out / "fit.json", _summary(fit, text))
+        write_table(out / "fit.csv", fit_rows(fit))
         replace_file(out / "case.toml", lambda to: to.write_text(case, encoding="utf-8"))
         write_checksums(out, _NAMES)
     return [out / name for name in _NAMES]
 
 
-def fitted_case(found: Fit, out: Path) -> str:
-    """Return the text of the case file for `out`, with fitted values and measured velocities."""
-    import tomli_w
+def fitted_case(fit: Fit, out: Path) -> str:
+    """The case file for `out`, with fitted values and measured velocities."""
 
-    content = parse_toml(
-        found.model.text(found.x, velocities_to_run(found.measured.velocity), _DIGITS)
-    )
+    content = parse_toml(fit.model.text(fit.x, velocities_to_run(fit.measured.velocity), _DIGITS))
     rough = content.get("roughness", [])
     for part in rough if isinstance(rough, list) else [rough]:
-        part["realisations"] = found.model.surfaces
+        part["realisations"] = fit.model.surfaces
         if "file" in part:
-            part["file"] = Path(os.path.relpath(found.model.folder / part["file"], out)).as_posix()
+            part["file"] = Path(os.path.relpath(fit.model.folder / part["file"], out)).as_posix()
     return tomli_w.dumps(content)
 
 
-def fit_rows(found: Fit) -> list[dict[str, float | str]]:
-    """Make a table row for each measured point."""
-    measured, by = found.measured, found.deviations
+def fit_rows(fit: Fit) -> list[dict[str, float | str]]:
+    measured, by = fit.measured, fit.deviations
     scatter = (by.by_surface**2).sum(axis=0) ** 0.5
     given = measured.deviation
     return [
@@ -65,56 +60,56 @@ def fit_rows(found: Fit) -> list[dict[str, float | str]]:
             VELOCITY: float(V),
             RESTITUTION: float(measured.restitution[k]),
             **({} if given is None else {DEVIATIONS[0]: float(given[k])}),
-            "fitted_restitution": float(found.fitted[k]),
-            "residual": float(found.residuals[k]),
-            "weight_std": float(found.weights[k]),
+            "fitted_restitution": float(fit.fitted[k]),
+            "residual": float(fit.residuals[k]),
+            "weight_std": float(fit.weights[k]),
             "surface_scatter": float(scatter[k]),
             "grid_error": math.nan if by.grid is None else abs(float(by.grid[k])),
             "model_error": float(by.model[k]),
-            "resolved": bool(found.resolved[k]),
+            "resolved": bool(fit.resolved[k]),
         }
         for k, V in enumerate(measured.velocity)
     ]
 
 
-def _summary(found: Fit, text: str) -> dict[str, Any]:
-    known = combination(found)
+def _summary(fit: Fit, text: str) -> dict[str, Any]:
+    known = combination(fit)
     return {
-        "parameters": [_parameter(found, k) for k in range(found.x.size)],
-        "correlation": found.uncertainty.correlation.tolist(),
+        "parameters": [_parameter(fit, k) for k in range(fit.x.size)],
+        "correlation": fit.uncertainty.correlation.tolist(),
         "best_known_combination": known
         and {"exponents": known[0], "half_interval_of_logarithm": known[1]},
         "confidence": CONFIDENCE,
-        "points": found.measured.velocity.size,
-        "degrees_of_freedom": found.freedom,
-        "chi_squared": found.chi_squared,
-        "rms_residual": float((found.residuals**2).mean() ** 0.5),
+        "points": fit.measured.velocity.size,
+        "degrees_of_freedom": fit.freedom,
+        "chi_squared": fit.chi_squared,
+        "rms_residual": float((fit.residuals**2).mean() ** 0.5),
         "weights": "noise, scatter between surfaces and error of the grid, in quadrature",
-        "surfaces": found.model.surfaces,
-        "intervals_include": _included(found),
-        "measured_values_are": f"means over {found.model.surfaces} places of impact or more; "
+        "surfaces": fit.model.surfaces,
+        "intervals_include": _included(fit),
+        "measured_values_are": f"means over {fit.model.surfaces} places of impact or more; "
         "std_if_one_place assumes one place",
         "low_and_high_include": "intervals_include, and the model of plasticity "
-        f"({found.deviations.model_share:g} times by_model_error)",
+        f"({fit.deviations.model_share:g} times by_model_error)",
         "intervals_do_not_include": "values that the case gives, rate effects, elastic waves",
-        "largest_model_error": float(found.deviations.model.max()),
+        "largest_model_error": float(fit.deviations.model.max()),
         "searches": [
             {
                 "factors": [math.exp(x) for x in minimum.x.tolist()],
                 "sum_of_squares": minimum.squares,
             }
-            for minimum in found.minima
+            for minimum in fit.minima
         ],
-        "curves_computed": found.model.evaluations,
-        "findings": findings(found),
+        "curves_computed": fit.model.evaluations,
+        "findings": findings(fit),
         "case": text,
         "versions": versions(),
     }
 
 
-def _parameter(found: Fit, k: int) -> dict[str, Any]:
-    parameter, factor = found.parameters[k], found.factors[k]
-    uncertainty, value = found.uncertainty, parameter.value * factor
+def _parameter(fit: Fit, k: int) -> dict[str, Any]:
+    parameter, factor = fit.parameters[k], fit.factors[k]
+    uncertainty, value = fit.uncertainty, parameter.value * factor
     low, high = _interval(value, uncertainty.combined_halves[k])
     data_low, data_high = _interval(value, uncertainty.halves[k])
     return {
@@ -127,35 +122,31 @@ def _parameter(found: Fit, k: int) -> dict[str, Any]:
         "high": high,
         "low_from_data": data_low,
         "high_from_data": data_high,
-        "identifiable": identifiable(found, k),
+        "identifiable": identifiable(fit, k),
         "relative_std": {
-            part: _known(found.uncertainty.deviation(part)[k]) for part in found.uncertainty.parts
+            part: _known(fit.uncertainty.deviation(part)[k]) for part in fit.uncertainty.parts
         },
-        "by_model_error": _known(found.uncertainty.by_model[k]),
-        "std_if_one_place": _known(found.uncertainty.by_one_place[k]),
+        "by_model_error": _known(fit.uncertainty.by_model[k]),
+        "std_if_one_place": _known(fit.uncertainty.by_one_place[k]),
     }
 
 
 def _interval(value: float, half: float) -> tuple[float | None, float | None]:
-    """The ends of an interval; None if it is unbounded. `half` is that of the logarithm."""
     if not math.isfinite(half):
         return None, None
     return value * math.exp(-half), value * math.exp(half)
 
 
 def _known(value: float) -> float | None:
-    """Return `value`, or None if `value` is at least ln 10⁶ and therefore counts as unknown.
-
-    `value` is a standard deviation or a change of the logarithm of a parameter.
-    """
+    """`value` of a logarithm, or None if it is so large that it counts as unknown."""
     return float(value) if value < math.log(1e6) else None
 
 
-def _included(found: Fit) -> str:
-    scattered = "standard deviations" if found.measured.deviation is not None else "residuals"
+def _included(fit: Fit) -> str:
+    scattered = "standard deviations" if fit.measured.deviation is not None else "residuals"
     words = [f"noise (from the {scattered})", "solver"]
-    if found.model.surfaces > 1:
-        words.append(f"mean of {found.model.surfaces} surfaces")
-    if found.deviations.grid is not None:
+    if fit.model.surfaces > 1:
+        words.append(f"mean of {fit.model.surfaces} surfaces")
+    if fit.deviations.grid is not None:
         words.append("grid")
     return ", ".join(words)

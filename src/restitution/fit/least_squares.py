@@ -1,4 +1,9 @@
-"""Weighted least squares over the logarithms of parameters, from several first guesses."""
+"""Weighted least squares over the logarithms of parameters, from several first guesses.
+
+lmfit does not replace this room: it computes no covariance of surfaces and grid, refuses profile
+intervals of a single parameter, and computed 948 curves for those of two, where the whole fit
+computes 276.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +13,8 @@ from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import least_squares
+from scipy.stats.qmc import Halton
 
 from restitution.errors import CaseError, RestitutionError
 from restitution.fit.model import Array, CaseModel, Cost
@@ -15,31 +22,23 @@ from restitution.fit.model import Array, CaseModel, Cost
 RANGE = 30.0  # the search covers values from 1/30 to 30 times the first guess
 
 # Step of finite differences in the logarithm of a parameter. The noise of the solver (1e-8) would
-# allow a smaller step. But over changes of a parameter by about 1 %, the COR of shallow contacts is
-# not smooth, because nodes begin to yield one at a time.
+# allow a smaller one, but nodes of shallow contacts begin to yield one at a time, so COR is not
+# smooth over changes by about 1 %.
 _STEP = 0.03
-# `search_widely` computes the sum of squares at `_SCANNED` points. It then starts searches from the
-# first guess and from the best `_STARTS` of these points.
-_SCANNED, _STARTS = 15, 2
-# Two minima count as different if the logarithm of a parameter differs by more than this value.
-DISTANCE = math.log(1.5)
-# `distinct` drops a minimum if its sum of squares is above this multiple of the smallest sum of
-# squares.
-_WORTH = 3.0
+_SCANNED, _STARTS = 15, 2  # points that `search_widely` tries, and searches from the best of them
+DISTANCE = math.log(1.5)  # difference of a logarithm from which two minima count as different
+_WORTH = 3.0  # `distinct` drops a minimum above this multiple of the smallest sum of squares
 _FAILED = 1e3  # residual (in standard deviations) assigned to a case that cannot be solved
 _EVALUATIONS = 40  # largest number of function evaluations of a search
 
-# Relative tolerance of a search, for the sum of squares and for the logarithms of the parameters. A
-# quick search needs less accuracy, because a full search starts from its result.
+# Relative tolerance for the sum of squares and for the logarithms. A full search starts from the
+# result of a quick one.
 _TOLERANCE: dict[Cost, float] = {"full": 1e-4, "quick": 1e-3}
 
 
 @dataclass(frozen=True)
 class Data:
-    """Measured COR at impact velocities (m/s).
-
-    `deviation` contains the standard deviations by which residuals are divided.
-    """
+    """Measured COR at velocities (m/s); residuals are divided by `deviation`."""
 
     velocity: Array
     restitution: Array
@@ -47,12 +46,8 @@ class Data:
 
 
 @dataclass(frozen=True)
-class Minimum:
-    """The parameters at which a search ended, and their sum of squares.
-
-    `x` holds ln(value/first guess) of each parameter, and `squares` is the sum of squared weighted
-    residuals.
-    """
+class SearchEnd:
+    """Where a search ended: ln(value/first guess), and the sum of squared weighted residuals."""
 
     x: Array
     squares: float
@@ -63,8 +58,7 @@ def jacobian(
 ) -> Array:
     """∂COR/∂x at `velocity` (m/s), shape (velocities, parameters), by finite differences.
 
-    The differences are one-sided if `central` is false. If the case cannot be solved on one side,
-    only the other side is used. If it cannot be solved on either side, the derivative is set to 0.
+    Sides on which the case cannot be solved are left out; without any, the derivative is 0.
     """
     here = model.restitution(x, velocity, cost)
     columns = []
@@ -80,25 +74,18 @@ def jacobian(
     return np.array(columns).T
 
 
-def search(model: CaseModel, data: Data, start: Array, cost: Cost = "full") -> Minimum:
-    """Search for a minimum from `start`.
-
-    Raises `RestitutionError` if the case cannot be solved at `start`.
-    """
-    from scipy.optimize import least_squares
+def search(model: CaseModel, data: Data, start: Array, cost: Cost = "full") -> SearchEnd:
+    """Search for a minimum from `start`; raise if the case cannot be solved there."""
 
     def safe(x: Array) -> Array:
-        """Return the residuals.
-
-        If the case cannot be solved, return residuals so large that the step is rejected.
-        """
+        """Residuals, or values so large that the step is rejected."""
         try:
             return _residuals(model, data, x, cost)
         except RestitutionError:
             return np.full(data.velocity.size, _FAILED)
 
-    _residuals(model, data, start, cost)  # raises if the case cannot be solved at the start
-    found = least_squares(
+    _residuals(model, data, start, cost)  # may raise
+    solution = least_squares(
         safe,
         start,
         jac=lambda x: (
@@ -110,16 +97,13 @@ def search(model: CaseModel, data: Data, start: Array, cost: Cost = "full") -> M
         gtol=1e-8,
         max_nfev=_EVALUATIONS,
     )
-    return Minimum(np.asarray(found.x), 2 * float(found.cost))
+    return SearchEnd(np.asarray(solution.x), 2 * float(solution.cost))
 
 
 def searches(
     model: CaseModel, data: Data, starts: Sequence[Array], cost: Cost = "full"
-) -> Iterator[Minimum]:
-    """Search from each of `starts`. Skip a start if the case cannot be solved there.
-
-    If all starts are skipped, the `RestitutionError` of the first start is raised.
-    """
+) -> Iterator[SearchEnd]:
+    """Search from each of `starts` that can be solved; raise the first error if none can."""
     failures: list[RestitutionError] = []
     for start in starts:
         try:
@@ -130,15 +114,11 @@ def searches(
         raise failures[0]
 
 
-def search_widely(model: CaseModel, data: Data) -> list[Minimum]:
-    """Return the minima of searches with `cost="quick"`, the best first.
+def search_widely(model: CaseModel, data: Data) -> list[SearchEnd]:
+    """Search quickly from the first guess and the best of evenly spread points; best end first.
 
-    `_SCANNED` points are spread evenly over the range of the logarithms of the parameters. The
-    searches start from the first guess, and from the `_STARTS` points with the smallest sums of
-    squares. A start is skipped if the case cannot be solved there. Raises `CaseError` if all
-    starts are skipped.
+    Raises `CaseError` if the case can be solved at none of these starts.
     """
-    from scipy.stats.qmc import Halton
 
     guess = np.zeros(len(model.parameters))
     # Skip the first point of the sequence, which is at a corner of the range.
@@ -147,39 +127,34 @@ def search_widely(model: CaseModel, data: Data) -> list[Minimum]:
     scanned = [(_squares(model, data, x), k) for k, x in enumerate(others)]
     best = [others[k] for value, k in sorted(scanned)[:_STARTS] if math.isfinite(value)]
     try:
-        found = list(searches(model, data, [guess, *best], "quick"))
+        minima = list(searches(model, data, [guess, *best], "quick"))
     except RestitutionError as error:
         raise CaseError(
             f"the case cannot be solved at the first guess of the parameters: {error}"
         ) from None
-    return sorted(found, key=lambda minimum: minimum.squares)
+    return sorted(minima, key=lambda minimum: minimum.squares)
 
 
-def distinct(minima: Sequence[Minimum]) -> list[Minimum]:
-    """Select minima that differ from each other, as starts of further searches.
+def distinct(minima: Sequence[SearchEnd]) -> list[SearchEnd]:
+    """Select the first of `minima`, and others that differ from it and are not much worse.
 
-    The first of `minima` is always kept. Another minimum is kept if it meets two conditions. It
-    must differ by more than `DISTANCE` from all minima that are already kept. Its sum of squares
-    must be at most `_WORTH` times the smallest sum of squares of all minima except the first. The
-    first minimum may come from a search at a different `Cost`, so its sum is not comparable.
+    The first may come from a search at a different `Cost`, so its sum is not compared.
     """
     first, *others = minima
     least = min((other.squares for other in others), default=0.0)
     kept = [first]
-    for each in others:
-        far = all(np.abs(each.x - other.x).max() > DISTANCE for other in kept)
-        if far and each.squares <= _WORTH * least:
-            kept.append(each)
+    for minimum in others:
+        far = all(np.abs(minimum.x - other.x).max() > DISTANCE for other in kept)
+        if far and minimum.squares <= _WORTH * least:
+            kept.append(minimum)
     return kept
 
 
 def _residuals(model: CaseModel, data: Data, x: Array, cost: Cost) -> Array:
-    """Computed minus measured COR, divided by the standard deviations `data.deviation`."""
     return (model.restitution(x, data.velocity, cost) - data.restitution) / data.deviation
 
 
 def _squares(model: CaseModel, data: Data, x: Array) -> float:
-    """Sum of squared weighted residuals with `cost="quick"`; inf if the case cannot be solved."""
     try:
         return float(np.sum(_residuals(model, data, x, "quick") ** 2))
     except RestitutionError:

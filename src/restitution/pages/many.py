@@ -11,7 +11,7 @@ from restitution.contact.checks.resolution import NODES_PER_PATCH
 from restitution.laws.law import Law
 from restitution.laws.law_files import read_laws
 from restitution.pages.methods import methods
-from restitution.pages.page import Cell, Drawing, Listing, Page, Table, write_page
+from restitution.pages.page import Cell, Drawing, Listing, Page, PageTable, write_page
 from restitution.plots.cor import IMPACT_VELOCITY, INDENTATION, Abscissa
 from restitution.plots.law import MOST_LINES, families_of, mixture_figure, rows_with, study_figure
 from restitution.results.reader import StoredCase, StudyResults
@@ -27,12 +27,12 @@ def write_study_page(out: Path) -> Path:
         status: sum(case.status == status for case in cases)
         for status in ("complete", "failed", "missing")
     }
-    parts: list[Table | Drawing | Listing] = [_cases(cases, swept), Listing("Study file", text)]
+    parts: list[PageTable | Drawing | Listing] = [_cases(cases, swept), Listing("Study file", text)]
     if complete := [case for case in cases if case.status == "complete"]:
         abscissae = [INDENTATION]
         if any(rows_with(case, IMPACT_VELOCITY) for case in cases):
             abscissae.append(IMPACT_VELOCITY)
-        drawings = (_restitution(complete, swept, each) for each in abscissae)
+        drawings = (_restitution(complete, swept, abscissa) for abscissa in abscissae)
         parts = [*drawings, *parts, methods(study.run(complete[0].name).summary)]
     page = Page(
         title=str(parse_toml(text).get("title", "")) or "Study",
@@ -47,21 +47,21 @@ def write_study_page(out: Path) -> Path:
 
 
 def _warnings(cases: list[StoredCase], count: dict[str, int]) -> list[str]:
-    found = []
+    warnings = []
     resolved = [row["resolved"] for case in cases for row in case.curve.rows]
     few = len(resolved) - int(sum(resolved))
     if few:
-        found.append(
+        warnings.append(
             f"{few} of {len(resolved)} depths are not resolved: at least half of their contact "
             f"is in patches of fewer than {NODES_PER_PATCH} nodes, or the cells are too large for "
             "adhesion, so their numbers depend on the grid"
         )
     if count["failed"] or count["missing"]:
-        found.append(
+        warnings.append(
             f"{count['failed']} cases failed and {count['missing']} are missing; the table of "
             "cases states the reasons"
         )
-    return found
+    return warnings
 
 
 def _restitution(drawn: list[StoredCase], swept: list[str], abscissa: Abscissa) -> Drawing:
@@ -84,11 +84,11 @@ def _restitution(drawn: list[StoredCase], swept: list[str], abscissa: Abscissa) 
         figure,
         f"Coefficient of restitution against {axis.label}, one line for each of {lines} cases",
         f"Open markers: not resolved by the grid. A click in the legend hides a case.{few}",
-        Table("Restitution", [*swept, axis.title, "COR", "resolved"], table),
+        PageTable("Restitution", [*swept, axis.title, "COR", "resolved"], table),
     )
 
 
-def _cases(cases: list[StoredCase], swept: list[str]) -> Table:
+def _cases(cases: list[StoredCase], swept: list[str]) -> PageTable:
     rows: list[list[Cell]] = []
     for case in cases:
         cor = [e for row in case.curve.rows if not math.isnan(e := row["restitution"])]
@@ -105,7 +105,7 @@ def _cases(cases: list[StoredCase], swept: list[str]) -> Table:
             ]
         )
     columns = ["case", *swept, "status", "smallest COR", "largest COR", "depths resolved", "reason"]
-    return Table("Cases", columns, rows)
+    return PageTable("Cases", columns, rows)
 
 
 def write_mixture_page(out: Path) -> Path:
@@ -126,7 +126,7 @@ def write_mixture_page(out: Path) -> Path:
         warnings=summary["warnings"],
         parts=[
             *map(_drawing, families_of(laws).values()),
-            Table("Summary", ["quantity", "value"], rows),
+            PageTable("Summary", ["quantity", "value"], rows),
             Listing("Mixture file", read_text(out / "mixture.toml")),
         ],
     )
@@ -153,7 +153,7 @@ def _drawing(laws: list[Law]) -> Drawing:
         mixture_figure("", laws),
         f"Coefficient of restitution of {name} against impact velocity, one line for each pair",
         "One line for each pair of sizes.",
-        Table("COR", columns, rows),
+        PageTable("COR", columns, rows),
     )
 
 

@@ -116,8 +116,8 @@ def theory_figure(
         for name, V in marks.items()
         if velocities.min() <= V <= velocities.max()
     ]
-    beside = "smooth bodies" if law is None else "smooth bodies, and fits"
-    return Figure(title, [cor_chart(IMPACT_VELOCITY.axis, series)], beside)
+    legend_title = "smooth bodies" if law is None else "smooth bodies, and fits"
+    return Figure(title, [cor_chart(IMPACT_VELOCITY.axis, series)], legend_title)
 
 
 _MOST_ENTRIES = 2 * len(PALETTE)  # each colour with two kinds of lines
@@ -159,15 +159,15 @@ def _line(law: Law, place: int | None) -> Line:
 
 def families_of(laws: Sequence[Law]) -> dict[tuple[str, str], list[Law]]:
     """Group the laws by their two materials; the keys are the names of the materials."""
-    found: dict[tuple[str, str], list[Law]] = {}
+    families: dict[tuple[str, str], list[Law]] = {}
     for law in laws:
-        found.setdefault((law.first.name, law.second.name), []).append(law)
-    return found
+        families.setdefault((law.first.name, law.second.name), []).append(law)
+    return families
 
 
-def fit_figure(found: Fit) -> Figure:
+def fit_figure(fit: Fit) -> Figure:
     """Plot measured COR with its standard deviations, and the fitted COR with its 95 % band."""
-    curve, measured = found.curve, found.measured
+    curve, measured = fit.curve, fit.measured
     series: list[Series] = []
     if curve.velocity.size > 1:
         low, high = curve.restitution - curve.half_band, curve.restitution + curve.half_band
@@ -182,13 +182,13 @@ def fit_figure(found: Fit) -> Figure:
             color=ORANGE,
             error=measured.deviation,
             error_label="" if measured.deviation is None else "standard deviation",
-            open=~found.resolved,
+            open=~fit.resolved,
             open_label="measured, contact not resolved",
         )
     )
     values = ", ".join(
-        f"{each.key} {each.text(factor)}"
-        for each, factor in zip(found.parameters, found.factors, strict=True)
+        f"{parameter.key} {parameter.text(factor)}"
+        for parameter, factor in zip(fit.parameters, fit.factors, strict=True)
     )
     return Figure(values, [cor_chart(IMPACT_VELOCITY.axis, series)])
 
