@@ -7,7 +7,7 @@ from typing import get_type_hints
 
 import pytest
 
-from restitution.cli import verbs
+from restitution.cli import parameters
 from restitution.cli.verbs import program
 
 VERBS = {
@@ -45,7 +45,7 @@ def test_the_function_behind_a_verb_has_its_parameters(verb, monkeypatch):
     called = []
     given = inspect.signature(call).parameters
     monkeypatch.setattr(
-        verbs, "import_module", lambda name: called.append(import_module(name)) or called[0]
+        parameters, "import_module", lambda name: called.append(import_module(name)) or called[0]
     )
     with pytest.raises(TypeError, match="unexpected keyword argument 'no_such'"):
         call(**dict.fromkeys(given), no_such=None)

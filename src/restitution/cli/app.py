@@ -17,7 +17,6 @@ except ModuleNotFoundError as error:
 
 
 def app(case: Path | None, port: int, *, browser: bool) -> None:
-    """Serve the page that shows `case` first, until Ctrl-C."""
     session = Session(first_content(case), None if case is None else case.parent)
 
     def ready(address: str) -> None:

@@ -47,7 +47,6 @@ _LABELS = {
 
 
 def check(case: Path) -> None:
-    """Print what a case or the first case of a study means, and warnings."""
     given, cases = _read(case)
     warnings: list[str] = []
     with naming(case), errors.status("making the surface"):

@@ -34,7 +34,6 @@ from restitution.results.tables import is_periodic
 
 
 def compare_theory(case: Path, out: Path | None, law: Path | None, figures: FigureFormat) -> None:
-    """Print theories of the smooth bodies of a case, or of a periodic contact."""
     if case.is_dir() and is_periodic(case):
         _refuse(law)
         _compare_area(area_of_results(PeriodicResults(case)), case, out, figures)

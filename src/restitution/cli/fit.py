@@ -25,7 +25,6 @@ from restitution.results.writer import make_folder
 
 
 def fit(measured: Path, case: Path, free: list[str], out: Path, figures: FigureFormat) -> None:
-    """Fit the keys `free` of a case, and write and print the fit."""
     names = [name.strip() for part in free for name in part.split(",") if name.strip()]
     table = read_measured(measured)
     _, text = read_case(case)

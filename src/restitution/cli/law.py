@@ -27,7 +27,6 @@ from restitution.plots.static import write_figure
 
 
 def fit_law(results: Path, out: Path, figures: FigureFormat) -> None:
-    """Make, write and print the law of stored results."""
     with spinner("reading the results") as show:
         law = law_of(results, lambda name, k, n: show(f"fitting {name} ({k} of {n})"))
         written = write_law(law, out)
@@ -88,7 +87,6 @@ def _table(laws: "tuple[FittedLaw, ...]") -> Table:
 
 
 def export(laws: list[Path], to: ExportFormat, out: Path, velocity: str | None) -> None:
-    """Write laws as the input of a DEM code."""
     read = read_laws(laws)
     at = None if velocity is None else velocity_of(velocity)
     texts = exported(read, to.value, at)

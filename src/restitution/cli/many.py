@@ -45,7 +45,6 @@ def study(
     resume: bool,
     retry_failed: bool,
 ) -> None:
-    """Run the missing cases of a study."""
     where = chosen_workers(workers, scheduler)
     read = read_study(study)
     folder = StudyFolder(out, read, resume=resume)
@@ -84,7 +83,6 @@ def mixture(
     resume: bool,
     figures: FigureFormat,
 ) -> None:
-    """Compute the missing curves of a mixture, and the laws of its pairs."""
     where = chosen_workers(workers, scheduler)
     read = read_mixture(mixture)
     folder = open_mixture_folder(out, read, resume=resume)
@@ -119,7 +117,6 @@ def mixture(
 
 
 def reproduce(out: Path, *, quick: bool, refined: bool, workers: int | None, resume: bool) -> None:
-    """Run the bundled studies, and judge the claims of the paper."""
     if quick and refined:
         raise CaseError("--quick, --refined: give only one of them")
     size: Size = "quick" if quick else "refined" if refined else "paper"

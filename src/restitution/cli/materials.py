@@ -33,7 +33,6 @@ _WIDEST = 1000  # width (characters) in which every table fits
 
 
 def materials(name: str | None, *, adhesion: bool, json: bool) -> None:
-    """Print the library, one material, or (with `adhesion`) works of adhesion."""
     if adhesion:
         _show_pairs(name, json)
         return

@@ -21,7 +21,6 @@ _POWDER = {
 def new(
     *, dem: bool, scan: bool, study: bool, powder: bool, values: list[str] | None, out: Path | None
 ) -> None:
-    """Write the chosen template; `values` are those of `--set`."""
     kinds = {"dem": dem, "scan": scan, "study": study, "powder": powder}
     chosen = [kind for kind, wanted in kinds.items() if wanted]
     if len(chosen) > 1:

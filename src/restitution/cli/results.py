@@ -12,12 +12,10 @@ from restitution.results.writer import require_new_file, write_table
 
 
 def report(results: Path) -> None:
-    """Write the page of stored results."""
     say_written(write_report(results))
 
 
 def compare(a: Path, b: Path, out: Path | None) -> None:
-    """Print (and write to the file `out`) the differences between two results."""
     comparison = compared(a, b)
     require_new_file(out)
     if out is not None:

@@ -56,14 +56,12 @@ _REMEDIES = {
 
 
 def run(case: Path, out: Path, device: DeviceName, figures: FigureFormat) -> None:
-    """Compute the curve of a case."""
     _run(case, out, device, figures, run_realisations, lambda read: read.realisations)
 
 
 def converge(
     case: Path, out: Path, *, grids: int, device: DeviceName, figures: FigureFormat
 ) -> None:
-    """Compute the curve of a case on several grids."""
     start = partial(run_convergence, grids=grids)
     summary = _run(case, out, device, figures, start, lambda _: grids)
     order = summary["observed_order"]

@@ -23,7 +23,6 @@ def simulate(
     spin: list[str] | None,
     out: Path | None,
 ) -> None:
-    """Integrate head-on or oblique impacts of a run."""
     require_new_file(out)
     law, run = bare_law(results), read_run(results)
     impact = run.case.impact

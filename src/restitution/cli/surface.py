@@ -24,7 +24,6 @@ from restitution.surfaces.texture import texture
 
 
 def surface(case: Path, out: Path, figures: FigureFormat) -> None:
-    """Compute, store and print the statistics of the surface of a case."""
     read, text = read_case(case)
     with naming(case), errors.status("making the surface"):
         made = read.surface(case.parent)

@@ -1,17 +1,9 @@
-"""The verbs of the command line with their options, in the groups of the help.
-
-The functions that do the work have the same names and are imported when they are called, because
-NumPy, xarray and matplotlib would delay help texts and completion by up to two seconds. (A lazy
-group of click would import them for the help and the completion of one verb.)
-"""
+"""The verbs with their arguments and options, in the groups of the help."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import wraps
-from importlib import import_module
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -26,44 +18,16 @@ from restitution.cli.parameters import (
     Resume,
     Scheduler,
     WorkerCount,
+    flag,
     given,
     one_of,
+    option,
     output,
+    program,
+    verb,
 )
 
-program = typer.Typer(
-    name="restitution",
-    help="Compute the coefficient of restitution (COR) of rough elastic-plastic particles.",
-    no_args_is_help=True,
-    context_settings={"help_option_names": ["-h", "--help"]},
-    pretty_exceptions_enable=False,
-)
-
-
-def _verb(panel: str, module: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Add a verb that calls the function of the same name in `module` of this package."""
-
-    def add(verb: Callable[..., None]) -> Callable[..., None]:
-        @wraps(verb)
-        def call(**values: Any) -> None:
-            getattr(import_module(f"restitution.cli.{module}"), verb.__name__)(**values)
-
-        return program.command(rich_help_panel=panel)(call)
-
-    return add
-
-
-def _print_version(wanted: bool) -> None:
-    if wanted:
-        from importlib.metadata import version
-
-        from restitution.numerics.kernels import instruction_set, missing
-
-        typer.echo(f"restitution {version('restitution')}")
-        typer.echo(f"compiled kernels: {instruction_set}")
-        if why := missing():
-            typer.echo(f"Hint: {why}")
-        raise typer.Exit
+__all__ = ["program"]
 
 
 def _material_names(incomplete: str) -> list[str]:
@@ -72,49 +36,30 @@ def _material_names(incomplete: str) -> list[str]:
     return [key for key in materials() if key.startswith(incomplete)]
 
 
-@program.callback()
-def _options(
-    version: Annotated[
-        bool,
-        typer.Option(
-            "--version",
-            callback=_print_version,
-            is_eager=True,
-            help="Print the version and the compiled kernels in use.",
-        ),
-    ] = False,
-) -> None:
-    pass
-
-
-@_verb("Prepare", "new")
+@verb("Prepare", "new")
 def new(
     dem: Annotated[
         bool,
-        typer.Option(
-            "--dem", help="Write a case for a DEM code, with COR against impact velocity."
-        ),
+        flag("--dem", "Write a case for a DEM code, with COR against impact velocity."),
     ] = False,
-    scan: Annotated[
-        bool, typer.Option("--scan", help="Write a case with a measured surface.")
-    ] = False,
+    scan: Annotated[bool, flag("--scan", "Write a case with a measured surface.")] = False,
     study: Annotated[
-        bool, typer.Option("--study", help="Write a study, which is a case with a table \\[sweep].")
+        bool, flag("--study", "Write a study, which is a case with a table \\[sweep].")
     ] = False,
     powder: Annotated[
         bool,
-        typer.Option(
+        flag(
             "--powder",
-            help="Write a case for a fine adhesive powder, on a grid that resolves its adhesion.",
+            "Write a case for a fine adhesive powder, on a grid that resolves its adhesion.",
         ),
     ] = False,
     values: Annotated[
         list[str] | None,
-        typer.Option(
-            "--set",
-            metavar="KEY=VALUE",
-            help="With --powder: material, radius, rms, correlation_length or work_of_adhesion, "
+        option(
+            "KEY=VALUE",
+            "With --powder: material, radius, rms, correlation_length or work_of_adhesion, "
             'for example radius="2 um"; may be repeated.',
+            "--set",
             show_default=False,
         ),
     ] = None,
@@ -130,7 +75,7 @@ def new(
     """Write a commented case file or study file to start from."""
 
 
-@_verb("Prepare", "materials")
+@verb("Prepare", "materials")
 def materials(
     name: Annotated[
         str | None,
@@ -143,32 +88,30 @@ def materials(
     ] = None,
     adhesion: Annotated[
         bool,
-        typer.Option(
+        flag(
             "--adhesion",
-            help="List the work of adhesion of pairs (of NAME with the others, if given), which a "
+            "List the work of adhesion of pairs (of NAME with the others, if given), which a "
             'case uses with work_of_adhesion = "library".',
         ),
     ] = False,
-    json: Annotated[
-        bool, typer.Option("--json", help="Print JSON, with values in SI units.")
-    ] = False,
+    json: Annotated[bool, flag("--json", "Print JSON, with values in SI units.")] = False,
 ) -> None:
     """List the materials that a case can name, or show the material NAME with its sources."""
 
 
-@_verb("Prepare", "check")
+@verb("Prepare", "check")
 def check(
     case: Annotated[Path, given("CASE", "Case file or study file (TOML).")],
 ) -> None:
     """Validate CASE and print derived quantities, such as the yield velocity; solve nothing."""
 
 
-@_verb("Prepare", "surface")
+@verb("Prepare", "surface")
 def surface(case: CaseFile, out: OutFolder, figures: Figures = FigureFormat.png) -> None:
     """Write the surface of CASE to OUT: heights, ISO 25178 statistics, a figure and a page."""
 
 
-@_verb("Compute", "app")
+@verb("Compute", "app")
 def app(
     case: Annotated[
         Path | None,
@@ -187,7 +130,7 @@ def app(
     """Open a page that redraws the curves of CASE while you change its values."""
 
 
-@_verb("Compute", "run")
+@verb("Compute", "run")
 def run(
     case: CaseFile,
     out: OutFolder,
@@ -197,17 +140,14 @@ def run(
     """Load and unload the contact of CASE; write curves, restitution and figures to OUT."""
 
 
-@_verb("Compute", "run")
+@verb("Compute", "run")
 def converge(
     case: CaseFile,
     out: OutFolder,
     grids: Annotated[
         int,
-        typer.Option(
-            min=2,
-            max=5,
-            metavar="N",
-            help="Number of grids, each with half the spacing of the previous one.",
+        option(
+            "N", "Number of grids, each with half the spacing of the previous one.", min=2, max=5
         ),
     ] = 3,
     device: OnDevice = DeviceName.cpu,
@@ -216,7 +156,7 @@ def converge(
     """Run CASE on its grid and on finer grids; write COR and its discretisation error to OUT."""
 
 
-@_verb("Compute", "many")
+@verb("Compute", "many")
 def study(
     study: Annotated[Path, given("STUDY", "Study file (TOML): a case and a table \\[sweep].")],
     out: OutFolder,
@@ -224,13 +164,13 @@ def study(
     scheduler: Scheduler = None,
     resume: Resume = False,
     retry_failed: Annotated[
-        bool, typer.Option("--retry-failed", help="With --resume: compute failed cases again, too.")
+        bool, flag("--retry-failed", "With --resume: compute failed cases again, too.")
     ] = False,
 ) -> None:
     """Run all cases of STUDY; write the results of each case and a table of all to OUT."""
 
 
-@_verb("Compute", "many")
+@verb("Compute", "many")
 def mixture(
     mixture: Annotated[
         Path, given("MIXTURE", "Mixture file (TOML): materials, sizes, walls and velocities.")
@@ -244,7 +184,7 @@ def mixture(
     """Compute the restitution laws of all pairs in MIXTURE, and write them to OUT."""
 
 
-@_verb("Compute", "fit")
+@verb("Compute", "fit")
 def fit(
     measured: Annotated[
         Path,
@@ -256,18 +196,17 @@ def fit(
     ],
     case: Annotated[
         Path,
-        typer.Option(
+        option(
+            "CASE",
+            "Case file (TOML); its values of KEYS are the first guesses.",
             "--case",
-            metavar="CASE",
-            help="Case file (TOML); its values of KEYS are the first guesses.",
             readable=False,
         ),
     ],
     free: Annotated[
         list[str],
-        typer.Option(
-            metavar="KEYS",
-            help="Keys of CASE to be fitted, separated by commas, such as yield_strength,rms.",
+        option(
+            "KEYS", "Keys of CASE to be fitted, separated by commas, such as yield_strength,rms."
         ),
     ],
     out: OutFolder,
@@ -276,17 +215,15 @@ def fit(
     """Find the values of KEYS in CASE that explain the restitution in MEASURED."""
 
 
-@_verb("Compute", "many")
+@verb("Compute", "many")
 def reproduce(
     out: OutFolder,
     quick: Annotated[
         bool,
-        typer.Option(
-            "--quick", help="Use smaller grids and fewer cases, which takes about three minutes."
-        ),
+        flag("--quick", "Use smaller grids and fewer cases, which takes about three minutes."),
     ] = False,
     refined: Annotated[
-        bool, typer.Option("--refined", help="Halve the grid spacing of rough contacts.")
+        bool, flag("--refined", "Halve the grid spacing of rough contacts.")
     ] = False,
     workers: WorkerCount = None,
     resume: Resume = False,
@@ -294,7 +231,7 @@ def reproduce(
     """Compute Figures 5 to 14 of Ghanbarzadeh et al. (2019) and check the claims of the paper."""
 
 
-@_verb("Use results", "results")
+@verb("Use results", "results")
 def report(
     results: Annotated[
         Path,
@@ -304,7 +241,7 @@ def report(
     """Write a self-contained HTML page of the results into the folder RESULTS."""
 
 
-@_verb("Use results", "results")
+@verb("Use results", "results")
 def compare(
     a: Annotated[Path, given("A", "Results folder of a run or study.")],
     b: Annotated[Path, given("B", "Results folder of the same kind as A.")],
@@ -313,7 +250,7 @@ def compare(
     """Print the differences between the results in A and B, and the errors of the differences."""
 
 
-@_verb("Use results", "compare_theory")
+@verb("Use results", "compare_theory")
 def compare_theory(
     case: Annotated[
         Path, given("CASE", "Case file (TOML), or the results folder of a periodic contact.")
@@ -324,11 +261,11 @@ def compare_theory(
     ] = None,
     law: Annotated[
         Path | None,
-        typer.Option(
-            "--law",
-            metavar="LAW",
-            help="Folder that `restitution fit-law` wrote for the same pair; adds the computed "
+        option(
+            "LAW",
+            "Folder that `restitution fit-law` wrote for the same pair; adds the computed "
             "points of this law.",
+            "--law",
             readable=False,
         ),
     ] = None,
@@ -340,39 +277,39 @@ def compare_theory(
     """
 
 
-@_verb("Use results", "simulate")
+@verb("Use results", "simulate")
 def simulate(
     results: Annotated[Path, given("RESULTS", "Results folder of a run.")],
     velocity: Annotated[
         list[str] | None,
-        typer.Option(
-            metavar="VELOCITY",
-            help='Impact velocity, such as "0.5 m/s"; may be repeated.',
+        option(
+            "VELOCITY",
+            'Impact velocity, such as "0.5 m/s"; may be repeated.',
             show_default="the velocities of the unloading curves",
         ),
     ] = None,
     friction: Annotated[
         float | None,
-        typer.Option(
+        option(
+            "MU",
+            "Coefficient of friction, for oblique impacts.",
             min=0.0,
-            metavar="MU",
-            help="Coefficient of friction, for oblique impacts.",
             show_default="the coefficient in the case",
         ),
     ] = None,
     angle: Annotated[
         list[str] | None,
-        typer.Option(
-            metavar="ANGLE",
-            help='Angle of impact from the normal, such as "30 deg"; may be repeated.',
+        option(
+            "ANGLE",
+            'Angle of impact from the normal, such as "30 deg"; may be repeated.',
             show_default="the angles in the case, or head-on",
         ),
     ] = None,
     spin: Annotated[
         list[str] | None,
-        typer.Option(
-            metavar="SPIN",
-            help='Spin of the first body before the impact, such as "100 rad/s"; a second --spin '
+        option(
+            "SPIN",
+            'Spin of the first body before the impact, such as "100 rad/s"; a second --spin '
             "is for the second body.",
             show_default="the spins in the case, or none",
         ),
@@ -389,7 +326,7 @@ def simulate(
     """
 
 
-@_verb("Use results", "law")
+@verb("Use results", "law")
 def fit_law(
     results: Annotated[
         Path, given("RESULTS", "Results folder of a run, ensemble or convergence study.")
@@ -400,7 +337,7 @@ def fit_law(
     """Write the restitution law of RESULTS to OUT: table, compact fit and fitted force laws."""
 
 
-@_verb("Use results", "law")
+@verb("Use results", "law")
 def export(
     laws: Annotated[
         list[Path],
@@ -423,9 +360,7 @@ def export(
     out: Annotated[Path, output("OUT", "Folder for the files.")],
     velocity: Annotated[
         str | None,
-        typer.Option(
-            metavar="VELOCITY", help='Impact velocity, such as "1 m/s"; not needed for csv.'
-        ),
+        option("VELOCITY", 'Impact velocity, such as "1 m/s"; not needed for csv.'),
     ] = None,
 ) -> None:
     """Write the input of a DEM code to OUT, with the COR of every pair at VELOCITY."""
