@@ -37,7 +37,7 @@ TESTS = {
     "runs/oblique.py": "runs/test_oblique_impacts.py",
     "results/compare.py": "cli/test_compare.py",
     "results/total_error.py": "results/test_total_error.py runs/test_error_budget.py",
-    "calibration/uncertainty.py": "calibration/test_uncertainty.py calibration/test_fit.py",
+    "fit/uncertainty.py": "fit/test_uncertainty.py fit/test_fit.py",
     "mixtures/scaling.py": "mixtures/test_mixture.py",
     "laws/law.py": "laws/test_interpolation.py laws/test_law.py",
     "laws/oblique.py": "laws/test_oblique.py",

@@ -14,7 +14,7 @@ import pytest
 
 from document_blocks import blocks, check_fragment, run_page, same_text
 from restitution import theory
-from restitution.cli.app import app
+from restitution.cli.verbs import program
 from restitution.errors import CaseError
 from tolerance import approx
 
@@ -267,7 +267,7 @@ def test_modules_and_commands_that_a_document_names_exist(document):
     for name in re.findall(r"\brestitution(?:\.[a-z_]\w*)+", text):
         if name.split(".")[1] not in {"csv", "liggghts", "lmp", "png"}:  # files of an export
             pkgutil.resolve_name(name)
-    verbs = {command.callback.__name__.replace("_", "-") for command in app.registered_commands}
+    verbs = {command.callback.__name__.replace("_", "-") for command in program.registered_commands}
     for verb in re.findall(r"(?:^|/bin/)restitution ([a-z][a-z-]*)", text, re.MULTILINE):
         assert verb in verbs
 

@@ -55,7 +55,7 @@ def test_a_run_comes_to_compiled_loops_over_few_files_and_never_back(
     cli, case_text, tmp_path, monkeypatch
 ):
     """docs/developers/source.md states these numbers and the two exceptions."""
-    monkeypatch.setattr("restitution.cli.running._draw", lambda *_: [])
+    monkeypatch.setattr("restitution.cli.run._draw", lambda *_: [])
     small = case_text.replace("[72, 64]", "[40, 36]").replace("steps = 4", "steps = 2")
     (tmp_path / "case.toml").write_text(small)
     ways = ways_to_loops(lambda: cli("run", tmp_path / "case.toml", "-o", tmp_path / "out"))

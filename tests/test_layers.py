@@ -25,7 +25,7 @@ ROOMS = (
     "runs",
     "sweeps",
     "mixtures",
-    "calibration",
+    "fit",
     "dem",
     "api",
     "plots",

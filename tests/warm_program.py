@@ -17,7 +17,7 @@ from functools import cache
 from pathlib import Path
 
 IMPORTED = (
-    "restitution.cli.app",
+    "restitution.cli.run",
     "restitution.runs.ensemble",
     "restitution.runs.convergence",
     "restitution.plots.static",

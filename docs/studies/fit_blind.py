@@ -79,9 +79,9 @@ def exact(text: str, seed: int) -> tuple[np.ndarray, np.ndarray]:
 def compute(seed: int) -> list[dict[str, object]]:
     """The rows of one case."""
     os.environ.setdefault("DUCC0_NUM_THREADS", "1")
-    from restitution.calibration.findings import findings, identifiable
-    from restitution.calibration.fit import fit
-    from restitution.calibration.measured import Measured
+    from restitution.fit.findings import findings, identifiable
+    from restitution.fit.fit import fit
+    from restitution.fit.measured import Measured
 
     truth, text = draw(seed)
     rng = np.random.default_rng([seed, 1])

@@ -1,7 +1,7 @@
 """How far the error of a plasticity model moves a fitted yield strength or yield pressure.
 
 `restitution fit` prints how a parameter changes if COR deviates by its full model error at every
-velocity (P M in `calibration.uncertainty`). Here the real deviations of COR from the finite-element
+velocity (P M in `fit.uncertainty`). Here the real deviations of COR from the finite-element
 curves (`validation/models.csv`) take the place of M, for each run of four or more neighbouring
 depths of a curve. Of smooth bodies, COR at the loading work W depends on W/Y⁵ only; so
 ∂COR/∂ln Y = −5 ∂COR/∂ln W is used for all curves. The program prints, for each model, which share

@@ -1,130 +1,19 @@
 """Coefficient of restitution of rough elastic-plastic particles from their surface topography."""
 
-from typing import TYPE_CHECKING
+import lazy_loader
 
-if TYPE_CHECKING:
-    import restitution.theory as theory
-    from restitution.api import collide_obliquely, export, law_of, open_results, run
-    from restitution.case.materials import material, materials
-    from restitution.collision import Collision, collide
-    from restitution.contact.bodies import Body, Pair
-    from restitution.contact.contact import Contact, smooth
-    from restitution.contact.loading import solve, step
-    from restitution.contact.path import loading_path, unloading_path
-    from restitution.contact.prescribed_force import solve_at_force
-    from restitution.contact.prescribed_pressure import solve_at_pressure
-    from restitution.contact.prescribed_velocity import solve_at_velocity
-    from restitution.contact.state import State
-    from restitution.errors import RestitutionError
-    from restitution.laws.oblique import ObliqueCollision
-    from restitution.numerics.convolution.cache import operator_cache
-    from restitution.numerics.convolution.device import on_device
-    from restitution.numerics.grid import Grid
-    from restitution.surfaces import (
-        Surface,
-        composite,
-        crop,
-        describe,
-        extend,
-        generate_surface,
-        level,
-        place_on_grid,
-        read_surface,
-        refine,
-        remove_outliers,
-    )
+# `__init__.pyi` lists the public names. A module is imported when one of its names is first used,
+# so `import restitution` does not load NumPy, which would delay help texts and Ctrl-C.
+_load, _, __all__ = lazy_loader.attach_stub(__name__, __file__)
 
-    __version__: str
 
-__all__ = [
-    "Body",
-    "Collision",
-    "Contact",
-    "Grid",
-    "ObliqueCollision",
-    "Pair",
-    "RestitutionError",
-    "State",
-    "Surface",
-    "collide",
-    "collide_obliquely",
-    "composite",
-    "crop",
-    "describe",
-    "export",
-    "extend",
-    "generate_surface",
-    "law_of",
-    "level",
-    "loading_path",
-    "material",
-    "materials",
-    "on_device",
-    "open_results",
-    "operator_cache",
-    "place_on_grid",
-    "read_surface",
-    "refine",
-    "remove_outliers",
-    "run",
-    "smooth",
-    "solve",
-    "solve_at_force",
-    "solve_at_pressure",
-    "solve_at_velocity",
-    "step",
-    "theory",
-    "unloading_path",
-]
+def __getattr__(name: str) -> object:
+    if name == "__version__":
+        from importlib.metadata import version
 
-# Modules and the public names that each of them defines. A module is imported when one of its names
-# is first used, so `import restitution` does not load NumPy. The command line also imports this
-# package, and loading NumPy would delay its help texts and its reaction to Ctrl-C.
-_MODULES = {
-    "api": ("collide_obliquely", "export", "law_of", "open_results", "run"),
-    "case.materials": ("material", "materials"),
-    "collision": ("Collision", "collide"),
-    "contact.bodies": ("Body", "Pair"),
-    "contact.contact": ("Contact", "smooth"),
-    "contact.prescribed_velocity": ("solve_at_velocity",),
-    "contact.prescribed_force": ("solve_at_force",),
-    "contact.prescribed_pressure": ("solve_at_pressure",),
-    "contact.loading": ("solve", "step"),
-    "contact.path": ("loading_path", "unloading_path"),
-    "contact.state": ("State",),
-    "errors": ("RestitutionError",),
-    "laws.oblique": ("ObliqueCollision",),
-    "numerics.convolution.cache": ("operator_cache",),
-    "numerics.convolution.device": ("on_device",),
-    "numerics.grid": ("Grid",),
-    "surfaces": (
-        "Surface",
-        "composite",
-        "crop",
-        "describe",
-        "extend",
-        "generate_surface",
-        "level",
-        "place_on_grid",
-        "read_surface",
-        "refine",
-        "remove_outliers",
-    ),
-}
+        return version(__name__)
+    return _load(name)
 
-if not TYPE_CHECKING:
 
-    def __getattr__(name):
-        from importlib import import_module, metadata
-
-        if name == "__version__":
-            return metadata.version(__name__)
-        if name == "theory":
-            return import_module(f"{__name__}.theory")
-        for module, names in _MODULES.items():
-            if name in names:
-                return getattr(import_module(f"{__name__}.{module}"), name)
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-
-    def __dir__():
-        return sorted({*globals(), *__all__, "__version__"})
+def __dir__() -> list[str]:
+    return [*__all__, "__version__"]

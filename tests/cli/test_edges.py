@@ -9,7 +9,7 @@ import sys
 
 import pytest
 
-from restitution.cli.environment import prepare
+from restitution.cli import prepare
 from restitution.errors import CaseError
 from restitution.laws import time_integration
 

@@ -6,8 +6,8 @@ import re
 
 import pytest
 
-from restitution.calibration.measured import read_measured
 from restitution.case.case_file import read_case
+from restitution.fit.measured import read_measured
 from tolerance import approx
 
 CASE = """

@@ -11,7 +11,7 @@ def test_it_says_which_law_it_is_fitting(cli, case_text, tmp_path, monkeypatch):
     case.write_text(case_text)
     assert cli("run", case, "-o", run)[0] == 0
     terminal = Console(file=io.StringIO(), force_terminal=True, width=100)
-    monkeypatch.setattr("restitution.cli.progress.errors", terminal)
+    monkeypatch.setattr("restitution.cli.console.errors", terminal)
     assert cli("fit-law", run, "-o", tmp_path / "law")[0] == 0
     shown = terminal.file.getvalue()
     steps = [

@@ -2,7 +2,7 @@
 
 import math
 
-from restitution.cli.running import _elastic_error, _with_error
+from restitution.cli.run import _elastic_error, _with_error
 
 
 def test_the_error_of_a_model_that_does_not_yield_is_explained():

@@ -5,9 +5,9 @@ import re
 import pytest
 import typer
 
-from restitution.cli.app import app
+from restitution.cli.verbs import program
 
-COMMANDS = typer.main.get_command(app).commands
+COMMANDS = typer.main.get_command(program).commands
 
 
 def complete(cli, monkeypatch, words, number):

@@ -1,6 +1,6 @@
 """A warning that is repeated with other numbers is printed once and counted."""
 
-from restitution.cli.warn_once import warn_once
+from restitution.cli.console import warn_once
 
 
 def warned(capsys, *messages):

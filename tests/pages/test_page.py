@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from restitution.pages.page import Drawing, Page, Table, write_page
+from restitution.pages.page import Drawing, Page, PageTable, write_page
 from restitution.plots.figure import Axis, Chart, Figure, Line
 
 HOSTILE = '</script><script>document.title = "hacked"</script><img src=x onerror=alert(1)> & "'
@@ -14,14 +14,16 @@ HOSTILE = '</script><script>document.title = "hacked"</script><img src=x onerror
 def page(title="A page", cell="cell"):
     line = Line(np.arange(5.0), np.arange(5.0) ** 2, cell)
     figure = Figure(title, [Chart(Axis("x", "µm"), Axis("y"), [line], title=cell)])
-    table = Table("Numbers", ["x", "y"], [[float(k), float(k * k)] for k in range(5)])
+    table = PageTable("Numbers", ["x", "y"], [[float(k), float(k * k)] for k in range(5)])
     return Page(
         title,
         [f"About {cell}"],
         [f"Beware of {cell}"],
         [
             Drawing("A figure", figure, f"Squares, {cell}", "How to read it", table),
-            Table("A table", ["name", cell], [[cell, 1.5], ["none", None], ["nan", float("nan")]]),
+            PageTable(
+                "A table", ["name", cell], [[cell, 1.5], ["none", None], ["nan", float("nan")]]
+            ),
         ],
     )
 

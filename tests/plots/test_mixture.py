@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from restitution.plots.mixture import mixture_figure
+from restitution.plots.law import mixture_figure
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ import numpy as np
 from restitution.case.case_file import parse_case
 from restitution.laws import theories as room
 from restitution.laws.closed_forms import FORMS
-from restitution.plots import theories as plotted
+from restitution.plots import law as plotted
 from restitution.plots.law import LAW_LINES
 from restitution.plots.static import draw
 

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from restitution.reproduce import studies as bundles
-from restitution.reproduce.claims import CLAIMS, Curve, critical_indentation, curves
+from restitution.reproduce.claims import CLAIMS, CaseCurve, critical_indentation, curves
 from restitution.reproduce.studies import NAMES, bundled
 from tolerance import approx
 
@@ -74,7 +74,7 @@ def test_every_bundled_study_is_a_valid_one(size):
 
 def curve(depth, cor):
     depth, cor = np.asarray(depth), np.asarray(cor)
-    return Curve("x", depth, cor, cor, cor, np.ones(cor.size, bool))
+    return CaseCurve("x", depth, cor, cor, cor, np.ones(cor.size, bool))
 
 
 def test_the_critical_indentation_is_where_the_last_difference_falls_below_five_percent():

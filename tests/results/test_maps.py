@@ -11,7 +11,7 @@ from restitution.case.case_file import parse_case
 from restitution.errors import CaseError, OutputError
 from restitution.numerics import memory
 from restitution.pages.report import write_report
-from restitution.plots.depth_maps import depth_maps_figure
+from restitution.plots.run import depth_maps_figure
 from restitution.results.maps import DepthMaps
 from tolerance import approx
 

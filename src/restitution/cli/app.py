@@ -1,87 +1,31 @@
-"""The command line: its verbs (subcommands) in groups, and the option `--version`."""
+"""`restitution app`: a page on this machine that redraws the curves while a slider moves."""
 
-from __future__ import annotations
+import webbrowser
+from pathlib import Path
 
-from collections.abc import Callable
-from typing import Annotated
+from restitution.cli.console import say
+from restitution.errors import CaseError
+from restitution.live.session import Session, first_content
 
-import typer
-
-from restitution.cli import (
-    check,
-    compare,
-    compare_theory,
-    converge,
-    export,
-    fit,
-    fit_law,
-    live,
-    materials,
-    mixture,
-    new,
-    report,
-    reproduce,
-    run,
-    simulate,
-    study,
-    surface,
-)
-
-app = typer.Typer(
-    name="restitution",
-    help="Compute the coefficient of restitution (COR) of rough elastic-plastic particles.",
-    no_args_is_help=True,
-    context_settings={"help_option_names": ["-h", "--help"]},
-    pretty_exceptions_enable=False,
-)
-_VERBS: dict[str, tuple[Callable[..., None], ...]] = {
-    "Prepare": (new.new, materials.materials, check.check, surface.surface),
-    "Compute": (
-        live.app,
-        run.run,
-        converge.converge,
-        study.study,
-        mixture.mixture,
-        fit.fit,
-        reproduce.reproduce,
-    ),
-    "Use results": (
-        report.report,
-        compare.compare,
-        compare_theory.compare_theory,
-        simulate.simulate,
-        fit_law.fit_law,
-        export.export,
-    ),
-}
-for panel, verbs in _VERBS.items():
-    for verb in verbs:
-        app.command(rich_help_panel=panel)(verb)
+try:
+    from restitution.live.serving import serve_page
+except ModuleNotFoundError as error:
+    raise CaseError(
+        f"the page needs {error.name}, which is not installed; in a checkout, run: "
+        'pip install ".[app]"'
+    ) from None
 
 
-def _print_version(wanted: bool) -> None:
-    if wanted:
-        from importlib.metadata import version
+def app(case: Path | None, port: int, *, browser: bool) -> None:
+    session = Session(first_content(case), None if case is None else case.parent)
 
-        from restitution.numerics.kernels import instruction_set, missing
+    def ready(address: str) -> None:
+        say(f"The page is at {address}")
+        say("Press Ctrl-C to end the program.")
+        if browser:
+            webbrowser.open(address)
 
-        typer.echo(f"restitution {version('restitution')}")
-        typer.echo(f"compiled kernels: {instruction_set}")
-        if why := missing():
-            typer.echo(f"Hint: {why}")
-        raise typer.Exit
-
-
-@app.callback()
-def _options(
-    version: Annotated[
-        bool,
-        typer.Option(
-            "--version",
-            callback=_print_version,
-            is_eager=True,
-            help="Print the version and the compiled kernels in use.",
-        ),
-    ] = False,
-) -> None:
-    pass
+    try:
+        serve_page(session, port, ready)
+    finally:
+        session.close()

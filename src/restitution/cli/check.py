@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
 
-import typer
 from rich.table import Column, Table
 
-if TYPE_CHECKING:
-    from restitution.case.case import Case
-    from restitution.contact.contact import Contact
+from restitution.case.case import Case
+from restitution.case.case_file import naming, parse_case, parse_toml, read_text
+from restitution.case.derived import deepest_indentation, derived_quantities
+from restitution.case.omissions import default_yield
+from restitution.cli.console import command, errors, print_numbers, say, say_next, warn
+from restitution.contact.contact import Contact
+from restitution.numerics.memory import available, in_words
+from restitution.runs.messages import failure_at_edge, input_warnings, no_range, require_possible
+from restitution.runs.refinement import least_refined
+from restitution.surfaces import describe
+from restitution.sweeps.sweep import parse_study
 
 # For each derived quantity: label, conversion factor from SI, displayed unit.
 _LABELS = {
@@ -40,30 +46,7 @@ _LABELS = {
 }
 
 
-def check(
-    case: Annotated[
-        Path,
-        typer.Argument(
-            metavar="CASE",
-            help="Case file or study file (TOML).",
-            show_default=False,
-            readable=False,
-        ),
-    ],
-) -> None:
-    """Validate CASE and print derived quantities, such as the yield velocity; solve nothing."""
-    from restitution.case.case_file import naming
-    from restitution.case.derived import deepest_indentation
-    from restitution.case.omissions import default_yield
-    from restitution.cli.console import command, errors, print_numbers, say, say_next, warn
-    from restitution.runs.messages import (
-        failure_at_edge,
-        input_warnings,
-        no_range,
-        require_possible,
-    )
-    from restitution.runs.refinement import least_refined
-
+def check(case: Path) -> None:
     given, cases = _read(case)
     warnings: list[str] = []
     with naming(case), errors.status("making the surface"):
@@ -94,8 +77,6 @@ def check(
 
 def _read(path: Path) -> tuple[Case, int]:
     """Return the case in `path` and 0, or the first case of a study and its number of cases."""
-    from restitution.case.case_file import naming, parse_case, parse_toml, read_text
-    from restitution.sweeps.sweep import parse_study
 
     text = read_text(path)
     with naming(path):
@@ -106,9 +87,6 @@ def _read(path: Path) -> tuple[Case, int]:
 
 
 def _table(case: Case, contact: Contact, *, auto: bool) -> Table:
-    from restitution.case.derived import derived_quantities
-    from restitution.numerics.memory import available, in_words
-    from restitution.surfaces import describe
 
     table = Table("", Column(justify="right"), "", box=None, show_header=False)
     nx, ny = contact.grid.nodes

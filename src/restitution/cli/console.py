@@ -1,18 +1,34 @@
-"""The two consoles: standard output for answers, standard error for progress and warnings."""
+"""What people see: answers on standard output, progress and warnings on standard error."""
 
 import shlex
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
+from typing import Protocol
 
+import typer
 from rich.cells import cell_len
 from rich.console import Console
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    ProgressColumn,
+    SpinnerColumn,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
 from rich.table import Column, Table
 
+from restitution.display import counted, some_of, without_numbers
 from restitution.errors import one_line
 
 answers = Console(highlight=False)
 errors = Console(stderr=True, highlight=False)
+# The message about repetitions quotes at most this number of characters of the repeated warning.
+_QUOTED = 60
 
 
 def say(text: str, console: Console = answers, style: str | None = None) -> None:
@@ -22,11 +38,11 @@ def say(text: str, console: Console = answers, style: str | None = None) -> None
 
 def table_of_numbers(*columns: str | Column) -> Table:
     """Make an empty table. A column whose header is given as a plain text is right-aligned."""
-    each = (
+    aligned = (
         column if isinstance(column, Column) else Column(column, justify="right", no_wrap=True)
         for column in columns
     )
-    return Table(*each, box=None, header_style="bold")
+    return Table(*aligned, box=None, header_style="bold")
 
 
 def print_numbers(table: Table) -> None:
@@ -43,6 +59,44 @@ def warn(message: str) -> None:
     say(f"Warning: {one_line(message)}", errors, "yellow")
 
 
+class Warn(Protocol):
+    """A function that issues a warning, optionally about a subject such as a case or a law."""
+
+    def __call__(self, message: str, subject: str = "") -> None:
+        """Print `message` with its `subject`, or count it if it was printed before."""
+
+
+@contextmanager
+def warn_once() -> Iterator[Warn]:
+    """Print each warning once; at the end, print how often and for which subjects it was repeated.
+
+    A warning that differs from an earlier one only in its numbers counts as a repetition.
+    """
+    first: dict[str, str] = {}
+    repeated: dict[str, list[tuple[str, str]]] = {}  # pairs (message, subject) by kind
+
+    def warn_or_count(message: str, subject: str = "") -> None:
+        kind = without_numbers(message)
+        if kind in first:
+            repeated.setdefault(kind, []).append((message, subject))
+        else:
+            first[kind] = message
+            warn(f"{subject}: {message}" if subject else message)
+
+    try:
+        yield warn_or_count
+    finally:
+        for kind, others in repeated.items():
+            whole = first[kind]
+            start = whole if len(whole) <= _QUOTED else f"{whole[:_QUOTED].rstrip()}…"
+            differ = any(message != whole for message, _ in others)
+            numbers = " with other numbers" if differ else ""
+            named = some_of(subject for _, subject in others)
+            which = f" ({named})" if named else ""
+            times = counted(len(others), "time")
+            warn(f'this warning was repeated {times}{numbers}{which}: "{start}"')
+
+
 def print_error(message: str) -> None:
     """Print one error on standard error."""
     say(f"Error: {one_line(message)}", errors, "red")
@@ -51,6 +105,7 @@ def print_error(message: str) -> None:
 @cache
 def hint_at_kernels() -> None:
     """Print a hint on standard error if solves are slow because compiled kernels are missing."""
+    # Kernels that do not exist are an error of this import, which this module prints.
     from restitution.numerics.convolution.device import CPU, current
     from restitution.numerics.kernels import missing
 
@@ -72,3 +127,45 @@ def say_written(path: Path, names: Iterable[str] = ()) -> None:
 def say_next(line: str) -> None:
     """Print the command that usually comes next."""
     say(f"Next: {line}")
+
+
+def progress_bar(*counts: ProgressColumn) -> Progress:
+    """Make a progress bar with a description, the columns `counts`, and times."""
+    return Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        *counts,
+        TimeElapsedColumn(),
+        TimeRemainingColumn(),
+        console=errors,
+        transient=True,
+    )
+
+
+@contextmanager
+def spinner(words: str) -> Iterator[Callable[[str], None]]:
+    """Show a spinner, `words` and the elapsed time; yield a function that replaces the words."""
+    columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()
+    with Progress(*columns, console=errors, transient=True) as bar:
+        task = bar.add_task(words)
+        yield lambda others: bar.update(task, description=others, refresh=True)
+
+
+@contextmanager
+def cases_progress(cases: int | None, out: object, resume: str) -> Iterator[Progress]:
+    """Show the progress of several `cases` (None if their number is unknown) with results in `out`.
+
+    `resume` is the command that continues the computation. After an interruption it is printed
+    again, and the process exits with the status that shells expect.
+    """
+    number = "" if cases is None else f"{cases} cases. "
+    say(f"{number}Results go to {out}; to resume: {resume}", errors)
+    hint_at_kernels()
+    try:
+        with progress_bar(MofNCompleteColumn()) as bar:
+            yield bar
+    except KeyboardInterrupt:
+        errors.print("Interrupted.", style="red")
+        say(f"Completed cases are kept; to resume: {resume}", errors)
+        # Exit status of Ctrl-C. After another signal, `main` exits with the status of that signal.
+        raise typer.Exit(130) from None

@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
+from itertools import combinations_with_replacement
 
-import typer
+from rich.markup import escape
 from rich.table import Column, Table
 
-if TYPE_CHECKING:
-    from restitution.case.materials import Material
+from restitution.case.materials import Material, adhesive, material, work_of_adhesion
+from restitution.case.materials import materials as library
+from restitution.cli.console import (
+    answers,
+    command,
+    print_numbers,
+    say,
+    say_next,
+    table_of_numbers,
+)
 
 # For each key of the library: name, symbol, conversion factor from SI, displayed unit.
 _QUANTITIES = {
@@ -24,51 +32,18 @@ _QUANTITIES = {
 _WIDEST = 1000  # width (characters) in which every table fits
 
 
-def _names(incomplete: str) -> list[str]:
-    """List the keys of the library that begin with `incomplete`, for completion in a shell."""
-    from restitution.case.materials import materials
-
-    return [key for key in materials() if key.startswith(incomplete)]
-
-
-def materials(
-    name: Annotated[
-        str | None,
-        typer.Argument(
-            metavar="NAME",
-            help="Material to show, with the spread and the sources of its values.",
-            show_default=False,
-            autocompletion=_names,
-        ),
-    ] = None,
-    adhesion: Annotated[
-        bool,
-        typer.Option(
-            "--adhesion",
-            help="List the work of adhesion of pairs (of NAME with the others, if given), which a "
-            'case uses with work_of_adhesion = "library".',
-        ),
-    ] = False,
-    json: Annotated[
-        bool, typer.Option("--json", help="Print JSON, with values in SI units.")
-    ] = False,
-) -> None:
-    """List the materials that a case can name, or show the material NAME with its sources."""
+def materials(name: str | None, *, adhesion: bool, json: bool) -> None:
     if adhesion:
         _show_pairs(name, json)
         return
-    from restitution.case.materials import material
-    from restitution.case.materials import materials as library
-    from restitution.cli.console import answers, command, print_numbers, say, say_next
-
-    found = library() if name is None else {(known := material(name)).key: known}
+    shown = library() if name is None else {(known := material(name)).key: known}
     if json:
-        answers.print_json(data={key: each.model_dump() for key, each in found.items()})
+        answers.print_json(data={key: entry.model_dump() for key, entry in shown.items()})
     elif name is None:
-        table = _list(found)
+        table = _list(shown)
         natural = answers.measure(table, options=answers.options.update(width=_WIDEST)).maximum
         if natural > answers.width:  # each material fits into one line without its long name
-            table = _list(found, names=False)
+            table = _list(shown, names=False)
         print_numbers(table)
         say_next(command("materials", "NAME") + " (spread and sources)")
     else:
@@ -80,11 +55,6 @@ def materials(
 
 def _show_pairs(name: str | None, json: bool) -> None:
     """Print the work of adhesion of all pairs, or of the pairs that contain the material `name`."""
-    from itertools import combinations_with_replacement
-
-    from restitution.case.materials import adhesive, material, work_of_adhesion
-    from restitution.cli.console import answers, say, table_of_numbers
-
     chosen = None if name is None else material(name).key
     if chosen:
         work_of_adhesion(chosen, chosen)  # refuse a material without a surface energy
@@ -109,23 +79,19 @@ def _show_pairs(name: str | None, json: bool) -> None:
     )
 
 
-def _list(found: dict[str, Material], *, names: bool = True) -> Table:
-    from restitution.cli.console import table_of_numbers
-
+def _list(shown: dict[str, Material], *, names: bool = True) -> Table:
     listed = {key: row for key, row in _QUANTITIES.items() if key != "surface_energy"}
     heads = [f"{symbol} ({unit})" if unit else symbol for _, symbol, _, unit in listed.values()]
     material = [Column("material", no_wrap=True)] if names else []
     table = table_of_numbers(Column("name", no_wrap=True), *heads, *material)
-    for key, each in found.items():
-        known = ((getattr(each, name), scale) for name, (_, _, scale, _) in listed.items())
+    for key, entry in shown.items():
+        known = ((getattr(entry, name), scale) for name, (_, _, scale, _) in listed.items())
         cells = ("-" if of is None else f"{scale * of.value:.5g}" for of, scale in known)
-        table.add_row(key, *cells, *([each.name] if names else []))
+        table.add_row(key, *cells, *([entry.name] if names else []))
     return table
 
 
 def _values(material: Material) -> Table:
-    from rich.markup import escape
-
     from restitution.cli.console import table_of_numbers
 
     table = table_of_numbers(

@@ -1,60 +1,26 @@
 """`restitution new`: a commented case or study file to start from."""
 
+from importlib.resources import files
 from pathlib import Path
-from typing import Annotated
+from string import Template
 
-import typer
+from restitution.cli.console import command, errors, say_next, say_written
+from restitution.errors import CaseError
+from restitution.results.writer import require_new_file, writing
+
+# The values of a powder that `--set` replaces.
+_POWDER = {
+    "material": "silica",
+    "radius": "5 um",
+    "rms": "10 nm",
+    "correlation_length": "0.3 um",
+    "work_of_adhesion": "0.05 J/m^2",
+}
 
 
 def new(
-    dem: Annotated[
-        bool,
-        typer.Option(
-            "--dem", help="Write a case for a DEM code, with COR against impact velocity."
-        ),
-    ] = False,
-    scan: Annotated[
-        bool, typer.Option("--scan", help="Write a case with a measured surface.")
-    ] = False,
-    study: Annotated[
-        bool, typer.Option("--study", help="Write a study, which is a case with a table \\[sweep].")
-    ] = False,
-    powder: Annotated[
-        bool,
-        typer.Option(
-            "--powder",
-            help="Write a case for a fine adhesive powder, on a grid that resolves its adhesion.",
-        ),
-    ] = False,
-    values: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--set",
-            metavar="KEY=VALUE",
-            help="With --powder: material, radius, rms, correlation_length or work_of_adhesion, "
-            'for example radius="2 um"; may be repeated.',
-            show_default=False,
-        ),
-    ] = None,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            "-o",
-            "--out",
-            metavar="FILE",
-            help="File to write; an existing file is never overwritten.",
-            show_default="case.toml, or study.toml",
-            readable=False,
-        ),
-    ] = None,
+    *, dem: bool, scan: bool, study: bool, powder: bool, values: list[str] | None, out: Path | None
 ) -> None:
-    """Write a commented case file or study file to start from."""
-    from importlib.resources import files
-
-    from restitution.cli.console import command, say_next, say_written
-    from restitution.errors import CaseError
-    from restitution.results.writer import require_new_file, writing
-
     kinds = {"dem": dem, "scan": scan, "study": study, "powder": powder}
     chosen = [kind for kind, wanted in kinds.items() if wanted]
     if len(chosen) > 1:
@@ -73,23 +39,8 @@ def new(
     say_next(command("check", file))
 
 
-# The values of a powder that `--set` replaces.
-_POWDER = {
-    "material": "silica",
-    "radius": "5 um",
-    "rms": "10 nm",
-    "correlation_length": "0.3 um",
-    "work_of_adhesion": "0.05 J/m^2",
-}
-
-
 def _powder(template: str, given: list[str]) -> str:
-    """Fill in the template of a powder."""
-    from string import Template
-
-    from restitution.cli.console import errors
-    from restitution.errors import CaseError
-    from restitution.runs.powder import powder_grid
+    from restitution.runs.powder import powder_grid  # loads the solver
 
     values = dict(_POWDER)
     for item in given:

@@ -1,16 +1,73 @@
-"""Arguments and options that several commands share.
+"""The program, and the arguments and options that several verbs share.
 
-In the help, OUT stands for a folder that a command writes, and FILE for a single file. Most inputs
+In the help, OUT stands for a folder that a verb writes, and FILE for a single file. Most inputs
 have a placeholder that says what they contain, such as CASE or RESULTS.
 """
 
+from collections.abc import Callable
 from enum import StrEnum
+from functools import wraps
+from importlib import import_module
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from restitution.errors import not_one_of
+
+program = typer.Typer(
+    name="restitution",
+    help="Compute the coefficient of restitution (COR) of rough elastic-plastic particles.",
+    no_args_is_help=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    pretty_exceptions_enable=False,
+)
+
+
+def verb(panel: str, module: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Add a verb that calls the function of the same name in `module` of this package.
+
+    The module is imported when the verb runs, because NumPy, xarray and matplotlib would delay help
+    texts and completion by up to two seconds. (A lazy group of click imports them for the help and
+    the completion of its verb.)
+    """
+
+    def add(signature: Callable[..., None]) -> Callable[..., None]:
+        @wraps(signature)
+        def call(**values: Any) -> None:
+            getattr(import_module(f"restitution.cli.{module}"), signature.__name__)(**values)
+
+        return program.command(rich_help_panel=panel)(call)
+
+    return add
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        from restitution.numerics.kernels import instruction_set, missing
+
+        typer.echo(f"restitution {version('restitution')}")
+        typer.echo(f"compiled kernels: {instruction_set}")
+        if why := missing():
+            typer.echo(f"Hint: {why}")
+        raise typer.Exit
+
+
+@program.callback()
+def _options(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version",
+            callback=_print_version,
+            is_eager=True,
+            help="Print the version and the compiled kernels in use.",
+        ),
+    ] = False,
+) -> None:
+    pass
 
 
 def one_of(words: type[StrEnum], *names: str, **more: Any) -> Any:
@@ -32,7 +89,27 @@ def one_of(words: type[StrEnum], *names: str, **more: Any) -> Any:
     return typer.Option(*names, parser=parse, autocompletion=complete, **more)
 
 
-class Device(StrEnum):
+def given(metavar: str, help_text: str) -> Any:
+    """Make an argument for a path without a default."""
+    return typer.Argument(metavar=metavar, help=help_text, show_default=False, readable=False)
+
+
+def output(metavar: str, help_text: str, **more: Any) -> Any:
+    """Make the option for a file or folder that a verb writes."""
+    return typer.Option("-o", "--out", metavar=metavar, help=help_text, readable=False, **more)
+
+
+def option(metavar: str, help_text: str, *names: str, **more: Any) -> Any:
+    """Make an option with a value; `more` contains further arguments of `typer.Option`."""
+    return typer.Option(*names, metavar=metavar, help=help_text, **more)
+
+
+def flag(name: str, help_text: str) -> Any:
+    """Make an option without a value."""
+    return typer.Option(name, help=help_text)
+
+
+class DeviceName(StrEnum):
     """Devices that solves can run on."""
 
     cpu = "cpu"
@@ -48,39 +125,34 @@ class FigureFormat(StrEnum):
     pdf = "pdf"
 
 
-CaseFile = Annotated[
-    Path,
-    typer.Argument(metavar="CASE", help="Case file (TOML).", show_default=False, readable=False),
-]
-OutFolder = Annotated[
-    Path,
-    typer.Option(
-        "-o", "--out", metavar="OUT", help="Folder for the results; new or empty.", readable=False
-    ),
-]
+# DEM codes and formats to which laws can be exported.
+ExportFormat = StrEnum(
+    "ExportFormat", ["lammps", "liggghts", "yade", "mercurydpm", "edem", "mujoco", "drake", "csv"]
+)
+
+CaseFile = Annotated[Path, given("CASE", "Case file (TOML).")]
+OutFolder = Annotated[Path, output("OUT", "Folder for the results; new or empty.")]
 OnDevice = Annotated[
-    Device,
+    DeviceName,
     one_of(
-        Device,
+        DeviceName,
+        "--device",
         help="Device for the solves; auto uses a GPU if one is available. A GPU needs CuPy.",
     ),
 ]
 Figures = Annotated[FigureFormat, one_of(FigureFormat, "--figures", help="Format of the figures.")]
 Scheduler = Annotated[
     str | None,
-    typer.Option(
-        metavar="ADDRESS", help="Compute on the Dask cluster with this scheduler (tcp://…)."
-    ),
+    option("ADDRESS", "Compute on the Dask cluster with this scheduler (tcp://…)."),
 ]
-Workers = Annotated[
+WorkerCount = Annotated[
     int | None,
-    typer.Option(
+    option(
+        "N",
+        "Number of processes on this machine.",
+        "--workers",
         min=1,
-        metavar="N",
-        help="Number of processes on this machine.",
         show_default="one for each core",
     ),
 ]
-Resume = Annotated[
-    bool, typer.Option("--resume", help="Compute only the cases that are not yet in OUT.")
-]
+Resume = Annotated[bool, flag("--resume", "Compute only the cases that are not yet in OUT.")]

@@ -2,79 +2,27 @@
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
 
-import typer
-
-if TYPE_CHECKING:
-    from restitution.results.reader import RunResults
+from restitution.case.quantities import read_impact_angle, read_quantity
+from restitution.cli.console import answers, print_numbers, say, say_written, table_of_numbers
+from restitution.errors import CaseError
+from restitution.laws import oblique
+from restitution.laws.from_results import bare_law
+from restitution.laws.law import velocity_of
+from restitution.laws.time_integration import collide_in_time, course, stored_force
+from restitution.results.reader import RunResults, read_run
+from restitution.results.writer import require_new_file, write_table
 
 
 def simulate(
-    results: Annotated[
-        Path,
-        typer.Argument(
-            metavar="RESULTS", help="Results folder of a run.", show_default=False, readable=False
-        ),
-    ],
-    velocity: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="VELOCITY",
-            help='Impact velocity, such as "0.5 m/s"; may be repeated.',
-            show_default="the velocities of the unloading curves",
-        ),
-    ] = None,
-    friction: Annotated[
-        float | None,
-        typer.Option(
-            min=0.0,
-            metavar="MU",
-            help="Coefficient of friction, for oblique impacts.",
-            show_default="the coefficient in the case",
-        ),
-    ] = None,
-    angle: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="ANGLE",
-            help='Angle of impact from the normal, such as "30 deg"; may be repeated.',
-            show_default="the angles in the case, or head-on",
-        ),
-    ] = None,
-    spin: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="SPIN",
-            help='Spin of the first body before the impact, such as "100 rad/s"; a second --spin '
-            "is for the second body.",
-            show_default="the spins in the case, or none",
-        ),
-    ] = None,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            "-o",
-            "--out",
-            metavar="FILE",
-            help="New CSV file for indentation, velocity and force over time.",
-            readable=False,
-        ),
-    ] = None,
+    results: Path,
+    *,
+    velocity: list[str] | None,
+    friction: float | None,
+    angle: list[str] | None,
+    spin: list[str] | None,
+    out: Path | None,
 ) -> None:
-    """Integrate collisions in time with the stored forces of RESULTS; compare with stored COR.
-
-    The impacts are oblique if an option gives an angle, a spin or a coefficient of friction, or if
-    the case gives an angle or a spin. VELOCITY is then the relative velocity of the centres, and
-    the table contains the tangential restitution, the angle of rebound and the spins.
-    """
-    from restitution.cli.console import answers, print_numbers, say_written, table_of_numbers
-    from restitution.laws.from_results import bare_law
-    from restitution.laws.law import velocity_of
-    from restitution.laws.time_integration import collide_in_time, course, stored_force
-    from restitution.results.reader import read_run
-    from restitution.results.writer import require_new_file, write_table
-
     require_new_file(out)
     law, run = bare_law(results), read_run(results)
     impact = run.case.impact
@@ -91,23 +39,23 @@ def simulate(
         "V (m/s)", "COR", "error", "by energies", "time (s)", "force (N)", "depth (nm)"
     )
     courses, blended = [], False
-    for each in velocities:
-        found, energies = collide_in_time(force, each), law.at(each)
+    for speed in velocities:
+        collision, energies = collide_in_time(force, speed), law.at(speed)
         # Errors of the force curves change the simulated COR, but not the COR from the stored
         # energies. The difference between these two COR estimates the effect of such errors. The
         # printed error is at least the error of the COR from the stored energies.
-        error = max(abs(found.restitution - energies.restitution), energies.error)
-        courses += course(found)
+        error = max(abs(collision.restitution - energies.restitution), energies.error)
+        courses += course(collision)
         table.add_row(
-            f"{each:.4g}",
-            f"{found.restitution:.5f}",
+            f"{speed:.4g}",
+            f"{collision.restitution:.5f}",
             f"± {error:.5f}",
             f"{energies.restitution:.5f}",
-            f"{found.duration:.4g}",
-            f"{found.largest_force:.4g}",
-            f"{1e9 * found.largest_indentation:.4g}",
+            f"{collision.duration:.4g}",
+            f"{collision.largest_force:.4g}",
+            f"{1e9 * collision.largest_indentation:.4g}",
         )
-        blended |= found.blended
+        blended |= collision.blended
     if out is not None:
         write_table(out, courses)
     print_numbers(table)
@@ -129,12 +77,6 @@ def _oblique(
     out: Path | None,
 ) -> None:
     """Compute oblique impacts at every velocity and angle, and print them as a table."""
-    from restitution.case.quantities import read_impact_angle, read_quantity
-    from restitution.cli.console import print_numbers, say, say_written, table_of_numbers
-    from restitution.errors import CaseError
-    from restitution.laws.law import velocity_of
-    from restitution.laws.oblique import collide_obliquely, course, oblique_force
-    from restitution.results.writer import write_table
 
     impact = run.case.impact
     if friction is None:
@@ -161,7 +103,7 @@ def _oblique(
             "--angle, --velocity: an oblique impact needs an angle and a velocity; give both"
         )
     first, second = [*turning, 0.0, 0.0][:2]
-    force = oblique_force(run, "--angle")
+    force = oblique.oblique_force(run, "--angle")
     table = table_of_numbers(
         "V\n(m/s)",
         "angle\n(°)",
@@ -174,18 +116,19 @@ def _oblique(
     )
     courses = []
     for speed in fast:
-        for each in at:
-            found = collide_obliquely(force, speed, each, friction, (first, second))
-            courses += course(found)
+        for slope in at:
+            collision = oblique.collide_obliquely(force, speed, slope, friction, (first, second))
+            courses += oblique.course(collision)
+            e_t, error = collision.tangential_restitution, collision.tangential_restitution_error
             table.add_row(
-                f"{found.velocity:.4g}",
-                f"{math.degrees(each):.4g}",
-                f"{found.normal_restitution:.4f}",
-                f"{found.tangential_restitution:.3f} ± {found.tangential_restitution_error:.3f}",
-                f"{math.degrees(found.rebound_angle):.2f}",
-                ", ".join(f"{spin:.5g}" for spin in found.spins),
-                f"{found.friction_loss:.4g}",
-                "full" if found.sliding else "part",
+                f"{collision.velocity:.4g}",
+                f"{math.degrees(slope):.4g}",
+                f"{collision.normal_restitution:.4f}",
+                f"{e_t:.3f} ± {error:.3f}",
+                f"{math.degrees(collision.rebound_angle):.2f}",
+                ", ".join(f"{spin:.5g}" for spin in collision.spins),
+                f"{collision.friction_loss:.4g}",
+                "full" if collision.sliding else "part",
             )
     print_numbers(table)
     say(

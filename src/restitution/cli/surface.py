@@ -2,69 +2,53 @@
 
 import math
 from collections.abc import Iterator
+from pathlib import Path
 
-import typer
+import xarray as xr
 from rich.table import Column, Table
 
-from restitution.cli.parameters import CaseFile, FigureFormat, Figures, OutFolder
+from restitution.case import needs
+from restitution.case.case_file import naming, read_case
+from restitution.cli.console import command, errors, print_numbers, say, say_next, say_written, warn
+from restitution.cli.parameters import FigureFormat
 from restitution.display import counted, quantity
+from restitution.pages.surface import PARAMETERS, scaled_parameter, write_surface_page
+from restitution.plots.static import write_figure
+from restitution.plots.surface import surface_map
+from restitution.results.interruption import hold_signals
+from restitution.results.locking import locked
+from restitution.results.writer import ResultsFolder, write_checksums, write_json, write_netcdf
+from restitution.runs.messages import surface_warnings
+from restitution.surfaces import describe
+from restitution.surfaces.texture import texture
 
 
-def surface(
-    context: typer.Context,
-    case: CaseFile,
-    out: OutFolder,
-    figures: Figures = FigureFormat.png,
-) -> None:
-    """Write the surface of CASE to OUT: heights, ISO 25178 statistics, a figure and a page."""
-    import xarray as xr
-
-    from restitution.case import needs
-    from restitution.case.case_file import naming, read_case
-    from restitution.cli.console import (
-        command,
-        errors,
-        print_numbers,
-        say,
-        say_next,
-        say_written,
-        warn,
-    )
-    from restitution.pages.surface import PARAMETERS, scaled_parameter, write_surface_page
-    from restitution.plots.static import write_figure
-    from restitution.plots.surface import surface_map
-    from restitution.results.interruption import hold_signals
-    from restitution.results.locking import locked
-    from restitution.results.writer import ResultsFolder, write_checksums, write_json, write_netcdf
-    from restitution.runs.messages import surface_warnings
-    from restitution.surfaces import describe
-    from restitution.surfaces.texture import texture
-
+def surface(case: Path, out: Path, figures: FigureFormat) -> None:
     read, text = read_case(case)
     with naming(case), errors.status("making the surface"):
         made = read.surface(case.parent)
         needs.require(needs.described_bytes(made.grid), made.grid)
-    context.with_resource(locked(out))
-    ResultsFolder(out)
-    with errors.status("describing the surface"):
-        statistics = describe(made) | texture(made)
-        warnings = surface_warnings(made, math.inf if read.periodic else read.pair().radius)
-    hx, hy = made.grid.spacing
-    provenance = {**made.provenance, "spacing_x_m": hx, "spacing_y_m": hy}
-    labels = {"units": "m", "long_name": "composite roughness"}
-    dataset = xr.Dataset(
-        {"height": (("x", "y"), made.height, labels)},
-        {"x": ("x", made.grid.x, {"units": "m"}), "y": ("y", made.grid.y, {"units": "m"})},
-        {"title": read.title, "case": text, **provenance},
-    )
-    with errors.status("writing the results"):
-        with hold_signals():
-            write_netcdf(out / "surface.nc", dataset)
-            content = {**statistics, "warnings": warnings, "provenance": provenance}
-            write_json(out / "statistics.json", content)
-            write_checksums(out, ["statistics.json", "surface.nc"])
-        picture = write_figure(out / "surface", surface_map(made, read.title), figures.value)
-        write_surface_page(out)
+    with locked(out):
+        ResultsFolder(out)
+        with errors.status("describing the surface"):
+            statistics = describe(made) | texture(made)
+            warnings = surface_warnings(made, math.inf if read.periodic else read.pair().radius)
+        hx, hy = made.grid.spacing
+        provenance = {**made.provenance, "spacing_x_m": hx, "spacing_y_m": hy}
+        labels = {"units": "m", "long_name": "composite roughness"}
+        dataset = xr.Dataset(
+            {"height": (("x", "y"), made.height, labels)},
+            {"x": ("x", made.grid.x, {"units": "m"}), "y": ("y", made.grid.y, {"units": "m"})},
+            {"title": read.title, "case": text, **provenance},
+        )
+        with errors.status("writing the results"):
+            with hold_signals():
+                write_netcdf(out / "surface.nc", dataset)
+                content = {**statistics, "warnings": warnings, "provenance": provenance}
+                write_json(out / "statistics.json", content)
+                write_checksums(out, ["statistics.json", "surface.nc"])
+            picture = write_figure(out / "surface", surface_map(made, read.title), figures.value)
+            write_surface_page(out)
 
     table = Table("", Column(justify="right"), "", box=None, show_header=False)
     for key, (name, _, unit, *_) in PARAMETERS.items():

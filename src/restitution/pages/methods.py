@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from restitution.pages.page import Table
+from restitution.pages.page import PageTable
 
 _ALWAYS = (
     (
@@ -100,7 +100,7 @@ _PERSSON = (
 )
 
 
-def methods(summary: Mapping[str, Any]) -> Table:
+def methods(summary: Mapping[str, Any]) -> PageTable:
     """Make the table of the methods of a run; `summary` is the content of its `summary.json`."""
     model = summary["model"]
     periodic = model["half_space"].startswith("periodic")
@@ -115,4 +115,6 @@ def methods(summary: Mapping[str, Any]) -> Table:
         rows.append(_ROUGHNESS[source])
     rows += [_PERSSON] if periodic else _REFERENCES
     versions = ", ".join(f"{name} {number}" for name, number in summary["versions"].items())
-    return Table("Methods", ["quantity", "method", "source"], rows, [f"Computed with {versions}."])
+    return PageTable(
+        "Methods", ["quantity", "method", "source"], rows, [f"Computed with {versions}."]
+    )

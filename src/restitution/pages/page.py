@@ -24,7 +24,7 @@ Cell = str | float | int | None
 
 
 @dataclass(frozen=True)
-class Table:
+class PageTable:
     """A table with column names and rows of cells; lines of `text` precede it."""
 
     title: str
@@ -49,7 +49,7 @@ class Drawing:
     figure: Figure
     alt: str
     caption: str
-    table: Table
+    table: PageTable
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class Page:
     title: str
     intro: Sequence[str] = ()
     warnings: Sequence[str] = ()
-    parts: Sequence[Table | Drawing | Listing] = ()
+    parts: Sequence[PageTable | Drawing | Listing] = ()
 
 
 def write_page(path: Path, page: Page) -> Path:

@@ -11,7 +11,7 @@ import xarray as xr
 
 from restitution.display import counted, quantity
 from restitution.pages.methods import methods
-from restitution.pages.page import Cell, Drawing, Listing, Page, Table, write_page
+from restitution.pages.page import Cell, Drawing, Listing, Page, PageTable, write_page
 from restitution.pages.run import groups, maps_drawing, pressure_percentiles
 from restitution.plots.periodic import (
     area_against_pressure,
@@ -32,7 +32,7 @@ def write_periodic_page(out: Path) -> Path:
     """Write `report.html` from the `results.nc` and `summary.json` in `out`."""
     stored = PeriodicResults(out)
     results, summary = stored.dataset, stored.summary
-    parts: list[Table | Drawing | Listing] = [_states(results)]
+    parts: list[PageTable | Drawing | Listing] = [_states(results)]
     if (results["nominal_pressure"].values > 0).any():
         parts.append(_area(results))
         if has_stiffness(results):
@@ -71,7 +71,7 @@ def _columns(results: xr.Dataset, *names: str) -> list[np.ndarray[Any, np.dtype[
     return [results[name].values if name in results else empty for name in names]
 
 
-def _states(results: xr.Dataset) -> Table:
+def _states(results: xr.Dataset) -> PageTable:
     """The table of all depths, in units for people."""
     theory = persson(results)
     names = ("nominal_pressure", "mean_gap", "corrected_relative_area", "largest_pressure")
@@ -99,7 +99,7 @@ def _states(results: xr.Dataset) -> Table:
         "stiffness (MPa/nm)",
         "resolved",
     ]
-    return Table("Results", columns, rows)
+    return PageTable("Results", columns, rows)
 
 
 def _stiffness_cell(k: float) -> str:
@@ -119,7 +119,7 @@ def _area(results: xr.Dataset) -> Drawing:
         "The area is corrected for the staircase edge of the contact. The dashed line is Persson's "
         "theory of elastic contact, with the rms slope of this surface. "
         f"Open markers ({few} of {p.size}): not resolved by the grid.",
-        Table(
+        PageTable(
             "Area and gap",
             ["nominal pressure (MPa)", "area (%)", "area of the nodes (%)", "mean gap (nm)"],
             np.column_stack([1e-6 * p, 100 * area, 100 * nodes, 1e9 * gap]).tolist(),
@@ -142,7 +142,7 @@ def _stiffness(results: xr.Dataset) -> Drawing:
         "Sharp and Robbins 2011, Phys. Rev. Lett. 106, 204301): pressure over stiffness is a "
         f"length, here {quantity(float(length), 'm')} or {length / rms:.2g} times the rms height "
         "at the smallest pressure.",
-        Table(
+        PageTable(
             "Stiffness",
             ["nominal pressure (MPa)", "stiffness (MPa/nm)", "pressure/stiffness (nm)"],
             np.column_stack([1e-6 * p, 1e-15 * k, 1e9 * p / k])[known].tolist(),
@@ -167,7 +167,7 @@ def _distribution(results: xr.Dataset) -> Drawing:
         f"{quantity(float(pressure.max()), 'Pa')}",
         "The area under a curve is the relative contact area. Dashed: Persson's theory of elastic "
         "contact at the same nominal pressure.",
-        Table(
+        PageTable(
             "Percentiles of the contact pressure (MPa)",
             ["nominal pressure (MPa)", *(f"{share} %" for share in _PERCENTILES)],
             rows,
@@ -186,9 +186,9 @@ def _map(results: xr.Dataset) -> Drawing:
     )
 
 
-def _diagnostics(results: xr.Dataset, summary: Mapping[str, Any]) -> Table:
+def _diagnostics(results: xr.Dataset, summary: Mapping[str, Any]) -> PageTable:
     resolved = results["resolved"].values.astype(bool)
-    return Table(
+    return PageTable(
         "Diagnostics",
         ["quantity", "value"],
         [

@@ -5,10 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from restitution.errors import OutputError, RestitutionError, one_line
-from restitution.pages.mixture import write_mixture_page
+from restitution.pages.many import write_mixture_page, write_study_page
 from restitution.pages.periodic import write_periodic_page
 from restitution.pages.run import write_run_page
-from restitution.pages.study import write_study_page
 from restitution.pages.surface import write_surface_page
 from restitution.results.schema import PERIODIC_FILE
 

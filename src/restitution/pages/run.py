@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -12,14 +14,14 @@ from numpy.typing import NDArray
 
 from restitution.case.omissions import default_yield
 from restitution.contact.checks.resolution import NODES_PER_PATCH
+from restitution.curve.oblique import ObliquePoint
 from restitution.pages.methods import methods
-from restitution.pages.oblique import oblique_drawing
-from restitution.pages.page import Cell, Drawing, Listing, Page, Table, write_page
+from restitution.pages.page import Cell, Drawing, Listing, Page, PageTable, write_page
 from restitution.plots.cor import Abscissa
-from restitution.plots.depth_maps import depth_maps_figure
-from restitution.plots.oblique import has_oblique
+from restitution.plots.oblique import has_oblique, oblique_figure
 from restitution.plots.run import (
     abscissae,
+    depth_maps_figure,
     has_map,
     load_displacement,
     pressure_map,
@@ -34,11 +36,11 @@ def write_run_page(out: Path) -> Path:
     """Write `report.html` from the `results.nc` and `summary.json` in `out`."""
     run = read_run(out)
     results, summary = run.dataset, run.summary
-    parts: list[Table | Drawing | Listing] = []
+    parts: list[PageTable | Drawing | Listing] = []
     if results.sizes["indentation_max"]:
         parts += [_restitution(results, abscissa) for abscissa in abscissae(results)]
         if run.oblique and has_oblique(results):
-            parts.append(oblique_drawing(results, run.oblique))
+            parts.append(_oblique_drawing(results, run.oblique))
         parts.append(_force(results))
         if has_map(results):
             parts.append(_pressure(results))
@@ -97,7 +99,7 @@ def _restitution(results: xr.Dataset, abscissa: Abscissa) -> Drawing:
         f"Open markers ({few} of {cor.size}): not resolved by the grid, because at least half of "
         f"the contact is in patches of fewer than {NODES_PER_PATCH} nodes, or the cells are too "
         "large for adhesion.",
-        Table(
+        PageTable(
             "Restitution",
             [abscissa.axis.title, "COR", "resolved", *errors],
             [
@@ -121,7 +123,7 @@ def _force(results: xr.Dataset) -> Drawing:
         load_displacement(results),
         f"Normal force against indentation, up to {load.max():.4g} N at {depth.max():.4g} µm",
         f"The loading curve{', and unloading curves from some of the depths' * bool(unloading)}.",
-        Table("Curves", ["curve", "indentation (µm)", "force (N)"], rows),
+        PageTable("Curves", ["curve", "indentation (µm)", "force (N)"], rows),
     )
 
 
@@ -148,7 +150,7 @@ def maps_drawing(maps: xr.Dataset, results: xr.Dataset) -> Drawing:
         depth_maps_figure(maps, title, downwards=down),
         f"Maps of the contact pressure, up to {1e-6 * largest[0].max():.4g} MPa",
         f"All {maps.sizes[depth]} depths are in maps.nc.",
-        Table(
+        PageTable(
             "Largest values of each depth",
             ["indentation (nm)", "pressure (MPa)", "plastic displacement (nm)"],
             np.column_stack(
@@ -158,7 +160,7 @@ def maps_drawing(maps: xr.Dataset, results: xr.Dataset) -> Drawing:
     )
 
 
-def pressure_percentiles(results: xr.Dataset) -> Table:
+def pressure_percentiles(results: xr.Dataset) -> PageTable:
     """Make a table of percentiles of the maps of pressure and plastic displacement."""
     columns = {
         f"{words} ({unit})": scale * results[name].values[results[name].values != 0]
@@ -168,7 +170,7 @@ def pressure_percentiles(results: xr.Dataset) -> Table:
         )
         if name in results and results[name].values.any()
     }
-    return Table(
+    return PageTable(
         "Distribution over the contact",
         ["percentile", *columns],
         [
@@ -178,7 +180,7 @@ def pressure_percentiles(results: xr.Dataset) -> Table:
     )
 
 
-def _diagnostics(results: xr.Dataset, summary: Mapping[str, Any]) -> Table:
+def _diagnostics(results: xr.Dataset, summary: Mapping[str, Any]) -> PageTable:
     rows: list[list[Cell]] = [
         [key.replace("_", " "), value]
         for key, value in summary["diagnostics"].items()
@@ -189,10 +191,10 @@ def _diagnostics(results: xr.Dataset, summary: Mapping[str, Any]) -> Table:
     if summary.get("observed_order") is not None:
         rows.append(["observed order of convergence", summary["observed_order"]])
     rows.append(["convolutions", summary["convolutions"]])
-    return Table("Diagnostics", ["quantity", "value"], rows)
+    return PageTable("Diagnostics", ["quantity", "value"], rows)
 
 
-def groups(summary: Mapping[str, Any]) -> Iterator[Table]:
+def groups(summary: Mapping[str, Any]) -> Iterator[PageTable]:
     """Yield a table for each group of quantities in `summary.json`."""
     for key, title in (
         ("derived", "Derived quantities"),
@@ -203,10 +205,62 @@ def groups(summary: Mapping[str, Any]) -> Iterator[Table]:
     ):
         if group := summary.get(key):
             rows = [[name, _cell(value)] for name, value in group.items()]
-            yield Table(title, ["quantity", "value"], rows)
+            yield PageTable(title, ["quantity", "value"], rows)
 
 
 def _cell(value: Any) -> Cell:
     if isinstance(value, bool) or not isinstance(value, (int, float, type(None))):
         return str(value)
     return value
+
+
+_NOTE = (
+    "Tangential restitution and angles refer to the velocity of the centres. Spins are positive in "
+    "the direction in which friction turns a body without spin. The dotted line marks the angle "
+    "from which the whole contact slides. The error of the tangential restitution e_t includes the "
+    "errors of the tangential law and of the normal restitution e_n."
+)
+
+
+def _oblique_drawing(results: xr.Dataset, points: Sequence[ObliquePoint]) -> Drawing:
+    known = [e_t for point in points if not math.isnan(e_t := point.tangential_restitution)]
+    ends = f"from {min(known):.3f} to {max(known):.3f} " if known else ""
+    cells: list[list[Cell]] = [
+        [
+            point.velocity,
+            math.degrees(point.angle),
+            point.normal_restitution,
+            point.tangential_restitution,
+            point.tangential_restitution_error,
+            math.degrees(point.rebound_angle),
+            point.first_spin,
+            point.second_spin,
+            point.friction_loss,
+            point.normal_loss,
+            "yes" if point.slides else "no",
+        ]
+        for point in points
+    ]
+    return Drawing(
+        "Oblique impacts",
+        oblique_figure(results),
+        f"Tangential restitution {ends}against the angle of impact, angle of rebound and spin",
+        _NOTE,
+        PageTable(
+            "Oblique impacts",
+            [
+                "velocity (m/s)",
+                "angle (°)",
+                "e_n",
+                "e_t",
+                "± e_t",
+                "rebound (°)",
+                "first spin (rad/s)",
+                "second spin (rad/s)",
+                "friction loss (J)",
+                "normal loss (J)",
+                "slides",
+            ],
+            cells,
+        ),
+    )

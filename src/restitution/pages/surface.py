@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from restitution.numerics.grid import Grid
-from restitution.pages.page import Cell, Drawing, Page, Table, write_page
+from restitution.pages.page import Cell, Drawing, Page, PageTable, write_page
 from restitution.plots.figure import Map
 from restitution.plots.interactive import shown_step
 from restitution.plots.surface import (
@@ -88,7 +88,7 @@ def write_surface_page(out: Path) -> Path:
             _heights(surface, statistics),
             _autocorrelation(surface),
             _spectrum(surface),
-            Table("Origin", ["step or source", "value"], origin),
+            PageTable("Origin", ["step or source", "value"], origin),
             _methods(surface),
         ],
     )
@@ -109,7 +109,7 @@ def _map(surface: Surface) -> Drawing:
         f"Map of heights from {low:.4g} to {high:.4g} nm about their mean",
         f"Heights above their mean.{every} The table has a few profiles along y; all heights are "
         "in surface.nc.",
-        Table(
+        PageTable(
             "Profiles along y",
             ["y (µm)", *(f"x = {x[i]:.4g} µm" for i in across)],
             [[float(y[j]), *(float(z[i, j]) for i in across)] for j in range(0, y.size, 8)],
@@ -124,10 +124,10 @@ def scaled_parameter(key: str, statistics: Mapping[str, Any]) -> float | None:
     return _scaled(statistics.get(key), PARAMETERS[key][3])
 
 
-def _parameters(statistics: Mapping[str, Any], provenance: Mapping[str, Any]) -> Table:
+def _parameters(statistics: Mapping[str, Any], provenance: Mapping[str, Any]) -> PageTable:
     rows: list[list[Cell]] = []
-    for key, (name, clause, unit, factor, asked) in PARAMETERS.items():
-        value, wanted = scaled_parameter(key, statistics), provenance.get(asked)
+    for key, (name, clause, unit, factor, requested) in PARAMETERS.items():
+        value, wanted = scaled_parameter(key, statistics), provenance.get(requested)
         if key == "lay_deg":
             wanted = None if value is None or wanted is None else math.degrees(float(wanted))
         rows.append(
@@ -142,7 +142,7 @@ def _parameters(statistics: Mapping[str, Any], provenance: Mapping[str, Any]) ->
         )
     of_scan = any(row[-1] is not None for row in rows)
     columns = ["parameter", "value", "unit", "ISO 25178-2", "requested", "of the scan"]
-    return Table(
+    return PageTable(
         "Parameters",
         columns if of_scan else columns[:-1],
         rows if of_scan else [row[:-1] for row in rows],
@@ -158,16 +158,16 @@ def _scaled(value: object, factor: float) -> float | None:
 
 
 def _heights(surface: Surface, statistics: Mapping[str, Any]) -> Drawing:
-    found = height_density(surface)
-    columns = [1e9 * found.height, 1e-9 * found.density, 1e-9 * found.normal]
+    density = height_density(surface)
+    columns = [1e9 * density.height, 1e-9 * density.density, 1e-9 * density.normal]
     return Drawing(
         "Distribution of heights",
-        height_distribution(found, material_ratio(surface, 201)),
+        height_distribution(density, material_ratio(surface, 201)),
         f"Histogram of heights with a skewness of {_number(statistics['Ssk'])} and a kurtosis of "
         f"{_number(statistics['Sku'])} beside the normal distribution, and the material ratio",
         "Heights beside the normal distribution of the same Sq, and (right axis) the material "
         "ratio (Abbott curve): the fraction of the surface that is higher.",
-        Table(
+        PageTable(
             "Heights",
             ["height (nm)", "density (1/nm)", "normal (1/nm)"],
             np.column_stack(columns).tolist(),
@@ -193,16 +193,16 @@ def _autocorrelation(surface: Surface) -> Drawing:
             if is_periodic(surface)
             else "averaged over all pairs of pixels."
         ),
-        Table("Autocorrelation", ["along", "lag (µm)", "autocorrelation"], rows),
+        PageTable("Autocorrelation", ["along", "lag (µm)", "autocorrelation"], rows),
     )
 
 
 def _spectrum(surface: Surface) -> Drawing:
     spectra = directed_spectra(surface)
     rows: list[list[Cell]] = [
-        [each.directions, 1e-6 * float(q), 2e6 * math.pi / float(q), 1e24 * float(C)]
-        for each in spectra
-        for q, C in zip(*each.spectrum, strict=True)
+        [directed.directions, 1e-6 * float(q), 2e6 * math.pi / float(q), 1e24 * float(C)]
+        for directed in spectra
+        for q, C in zip(*directed.spectrum, strict=True)
     ]
     return Drawing(
         "Power spectral density",
@@ -215,13 +215,13 @@ def _spectrum(surface: Surface) -> Drawing:
             if is_periodic(surface)
             else "An estimate with nine sine tapers, because the surface is not periodic."
         ),
-        Table("Spectrum", ["directions", "q (1/µm)", "wave length (µm)", "C (µm⁴)"], rows),
+        PageTable("Spectrum", ["directions", "q (1/µm)", "wave length (µm)", "C (µm⁴)"], rows),
     )
 
 
-def _methods(surface: Surface) -> Table:
+def _methods(surface: Surface) -> PageTable:
     spectrum = "" if is_periodic(surface) else ", sine tapers of Riedel and Sidorenko (1995)"
-    return Table(
+    return PageTable(
         "Methods",
         ["quantity", "method", "source"],
         [

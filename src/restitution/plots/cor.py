@@ -45,7 +45,7 @@ def cor_axis(series: Sequence[Series]) -> Axis:
 
     Its ends are multiples of 0.1, except near COR = 0 and COR = 1.
     """
-    shown: Array = np.concatenate([np.ravel(part) for each in series for part in _values(each)])
+    shown: Array = np.concatenate([np.ravel(y) for part in series for y in _values(part)])
     values = shown[np.isfinite(shown)] if np.isfinite(shown).any() else np.array([0.0, 1.0])
     low = max(_STEP * np.floor((values.min() - _MARGIN) / _STEP), 0.0)
     high = _STEP * np.ceil((values.max() + _MARGIN) / _STEP)
@@ -72,12 +72,12 @@ def bars(cor: Array, error: Array) -> tuple[Array, str]:
     return lengths, "total error (cut at 0 and 1)" if cut else "total error"
 
 
-def _values(each: Series) -> Iterable[Array]:
-    if isinstance(each, Band):
-        return each.low, each.high
-    if isinstance(each, Mark):
+def _values(part: Series) -> Iterable[Array]:
+    if isinstance(part, Band):
+        return part.low, part.high
+    if isinstance(part, Mark):
         return ()
-    if isinstance(each, Points) and each.error is not None and has_error(each):
-        below, above = np.broadcast_to(each.error, (2, np.size(each.y)))
-        return each.y, each.y - below, each.y + above
-    return (each.y,)
+    if isinstance(part, Points) and part.error is not None and has_error(part):
+        below, above = np.broadcast_to(part.error, (2, np.size(part.y)))
+        return part.y, part.y - below, part.y + above
+    return (part.y,)

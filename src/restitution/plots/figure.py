@@ -156,14 +156,14 @@ def legend_entries(panel: Chart | Map) -> list[str]:
     """The legend texts of one panel, in the order of the series, without repetition."""
     if isinstance(panel, Map):
         return []
-    found = []
-    for each in panel.series:
-        if not isinstance(each, Mark):
-            found.append(each.label)
-        if isinstance(each, Points):
-            found.append(each.open_label if has_open(each) else "")
-            found.append(each.error_label if has_error(each) else "")
-    return [label for label in dict.fromkeys(found) if label]
+    labels = []
+    for series in panel.series:
+        if not isinstance(series, Mark):
+            labels.append(series.label)
+        if isinstance(series, Points):
+            labels.append(series.open_label if has_open(series) else "")
+            labels.append(series.error_label if has_error(series) else "")
+    return [label for label in dict.fromkeys(labels) if label]
 
 
 def has_open(points: Points) -> bool:

@@ -47,9 +47,9 @@ def draw(panel: Chart | Map, figure: Figure) -> Plot:
         return Plot([_heatmap(panel)], layout | _map_axes(panel))
     # Add all traces in one call, because Plotly validates the whole plot after each change.
     plot = Plot(_all_traces(panel), layout | _chart_axes(panel))
-    for each in panel.series:
-        if isinstance(each, Mark):
-            _draw_mark(plot, each)
+    for part in panel.series:
+        if isinstance(part, Mark):
+            _draw_mark(plot, part)
     return plot
 
 
@@ -77,59 +77,59 @@ def _all_traces(chart: Chart) -> list[dict[str, Any]]:
     """Make the traces of all series, from bottom to top. The legend shows each label once."""
     ranks = {label: rank for rank, label in enumerate(legend_entries(chart), 1)}
     seen: set[str] = set()
-    found = []
+    traces = []
     for layer in _LAYERS:
-        for each in chart.series:
-            for trace in _traces(each, chart) if isinstance(each, layer) else ():
+        for part in chart.series:
+            for trace in _traces(part, chart) if isinstance(part, layer) else ():
                 entry = trace.pop("entry")
                 trace |= {"type": "scatter", "legendgroup": _escaped(entry)}
                 trace |= {"legendrank": ranks.get(entry, 0)}
-                found.append(trace | {"showlegend": bool(entry) and entry not in seen})
+                traces.append(trace | {"showlegend": bool(entry) and entry not in seen})
                 seen.add(entry)
-    return found
+    return traces
 
 
-def _traces(each: Band | Line | Points, chart: Chart) -> list[dict[str, Any]]:
+def _traces(part: Band | Line | Points, chart: Chart) -> list[dict[str, Any]]:
     """Make the traces of one series. The key `entry` of a trace holds its legend text."""
-    if isinstance(each, Band):
-        edge = {"x": each.x, "mode": "lines", "line": {"width": 0}, "hoverinfo": "skip"}
+    if isinstance(part, Band):
+        edge = {"x": part.x, "mode": "lines", "line": {"width": 0}, "hoverinfo": "skip"}
         return [
-            {**edge, "y": each.low, "entry": ""},
+            {**edge, "y": part.low, "entry": ""},
             {
                 **edge,
-                "y": each.high,
+                "y": part.high,
                 "fill": "tonexty",
-                "fillcolor": _faint(each.color),
-                "name": _escaped(each.label),
-                "entry": each.label,
+                "fillcolor": _faint(part.color),
+                "name": _escaped(part.label),
+                "entry": part.label,
             },
         ]
-    name = _escaped(each.name or each.label)
-    y = chart.right if isinstance(each, Line) and each.right else chart.y
+    name = _escaped(part.name or part.label)
+    y = chart.right if isinstance(part, Line) and part.right else chart.y
     trace: dict[str, Any] = {
-        "x": each.x,
-        "y": each.y,
-        "name": _escaped(each.label) or name,
-        "entry": each.label,
+        "x": part.x,
+        "y": part.y,
+        "name": _escaped(part.label) or name,
+        "entry": part.label,
         "hovertemplate": f"%{{x:.4g}} {_escaped(chart.x.unit)}<br>"
         f"%{{y:.4g}} {_escaped((y or chart.y).unit)}<extra>{name}</extra>",
     }
-    if isinstance(each, Line):
-        line = {"color": each.color, "width": each.width + 0.3, "dash": _dashes(each)}
-        trace |= {"mode": "lines" if np.size(each.x) > 1 else "markers", "line": line}
-        trace |= {"line_shape": "hvh"} if each.step else {}
-        return [trace | ({"yaxis": "y2"} if each.right else {})]
-    hollow = np.zeros(np.shape(each.x), bool) if each.open is None else each.open
-    closed = {"symbol": each.symbol, "size": 7, "color": each.color}
+    if isinstance(part, Line):
+        line = {"color": part.color, "width": part.width + 0.3, "dash": _dashes(part)}
+        trace |= {"mode": "lines" if np.size(part.x) > 1 else "markers", "line": line}
+        trace |= {"line_shape": "hvh"} if part.step else {}
+        return [trace | ({"yaxis": "y2"} if part.right else {})]
+    hollow = np.zeros(np.shape(part.x), bool) if part.open is None else part.open
+    closed = {"symbol": part.symbol, "size": 7, "color": part.color}
     trace |= {
-        "mode": "lines+markers" if each.joined else "markers",
-        "line": {"color": each.color, "width": 1.5},
+        "mode": "lines+markers" if part.joined else "markers",
+        "line": {"color": part.color, "width": 1.5},
         "marker": closed
-        | {"symbol": [f"{each.symbol}-open" if h else each.symbol for h in hollow]},
+        | {"symbol": [f"{part.symbol}-open" if h else part.symbol for h in hollow]},
     }
     traces = [trace]
-    if each.error is not None and has_error(each):
-        below, above = np.broadcast_to(each.error, (2, np.size(each.y)))
+    if part.error is not None and has_error(part):
+        below, above = np.broadcast_to(part.error, (2, np.size(part.y)))
         trace["error_y"] = {
             "array": above,
             "arrayminus": below,
@@ -137,15 +137,15 @@ def _traces(each: Band | Line | Points, chart: Chart) -> list[dict[str, Any]]:
             "thickness": 1,
             "width": 3,
         }
-    if has_open(each) and not hollow.all():
+    if has_open(part) and not hollow.all():
         # By default the legend shows the marker of the first point, which may be open. Show a
         # closed marker instead.
-        traces.insert(0, _legend_only(each.label, closed, mode=trace["mode"], line=trace["line"]))
-    if has_open(each):
-        traces.append(_legend_only(each.open_label, closed | {"symbol": f"{each.symbol}-open"}))
-    if has_error(each):
-        bar = {"symbol": "line-ns-open", "size": 12, "color": each.color}
-        traces.append(_legend_only(each.error_label, bar))
+        traces.insert(0, _legend_only(part.label, closed, mode=trace["mode"], line=trace["line"]))
+    if has_open(part):
+        traces.append(_legend_only(part.open_label, closed | {"symbol": f"{part.symbol}-open"}))
+    if has_error(part):
+        bar = {"symbol": "line-ns-open", "size": 12, "color": part.color}
+        traces.append(_legend_only(part.error_label, bar))
     return traces
 
 
@@ -199,7 +199,7 @@ def _map_axes(part: Map) -> dict[str, Any]:
 
 
 def _axis(axis: Axis) -> dict[str, Any]:
-    found: dict[str, Any] = {
+    settings: dict[str, Any] = {
         "title": {"text": _escaped(axis.title)},
         "type": axis.scale,
         "showline": True,
@@ -212,10 +212,10 @@ def _axis(axis: Axis) -> dict[str, Any]:
         for end in (axis.low, axis.high)
     ]
     if None not in ends:
-        found["range"] = ends
+        settings["range"] = ends
     elif ends != [None, None]:  # Plotly loses a range with one fixed end when the page is resized
-        found["autorangeoptions"] = dict(zip(("minallowed", "maxallowed"), ends, strict=True))
-    return found
+        settings["autorangeoptions"] = dict(zip(("minallowed", "maxallowed"), ends, strict=True))
+    return settings
 
 
 def _dashes(line: Line) -> str:

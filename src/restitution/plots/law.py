@@ -1,21 +1,39 @@
-"""The figure of a restitution law."""
+"""Figures of COR against impact velocity: a law, theories, a mixture, a fit, or a study."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
 import numpy as np
 
+from restitution.curve.columns import array
+from restitution.curve.point import Point
+from restitution.display import quantity
 from restitution.laws.law import Law
-from restitution.plots.cor import IMPACT_VELOCITY, bars, cor_chart
+from restitution.plots.cor import IMPACT_VELOCITY, Abscissa, bars, cor_chart
 from restitution.plots.figure import (
     BLUE,
     DASHED,
+    GREY,
+    ORANGE,
+    PALETTE,
     SOLID,
+    SYMBOLS,
+    Array,
+    Band,
     Dash,
     Figure,
     Line,
+    Mark,
     Points,
     Series,
 )
+from restitution.results.reader import StoredCase
+
+if TYPE_CHECKING:  # only `restitution fit` needs the solver
+    from restitution.fit.fit import Fit
 
 # Colour, dashes and width of the line of each law. Lines that often coincide at COR = 1 differ in
 # width.
@@ -70,3 +88,140 @@ def computed_points(law: Law, label: str, open_label: str) -> Points:
         open=~law.column("resolved").astype(bool),
         open_label=open_label,
     )
+
+
+def theory_figure(
+    title: str,
+    lines: Sequence[tuple[str, bool, Array, Array]],
+    marks: Mapping[str, float],
+    law: Law | None = None,
+) -> Figure:
+    """Plot COR against velocity: one line for each theory, and the computed points of `law`.
+
+    Each of `lines` is a tuple: the name, whether the line is a fit, the velocities (m/s), and COR.
+    Lines without a finite COR are left out. `marks` maps the symbols "V_y" and "V_s" to the
+    velocities (m/s) of first yield and of sticking.
+    """
+    series: list[Series] = (
+        [] if law is None else [computed_points(law, "computed", "computed, not resolved")]
+    )
+    for name, fitted, V, e in lines:
+        if np.isfinite(e).any():
+            color, dash, width = LAW_LINES[name]
+            label = name + " (fit)" * fitted
+            series.append(Line(V, e, label, color=color, dash=dash, width=width))
+    velocities = np.concatenate([V for _, _, V, _ in lines])
+    # The mark at the highest velocity has its name on the right, other marks on the left.
+    order = sorted(marks, key=marks.__getitem__)
+    series += [
+        Mark("x", V, name[0], name[-1], "right" if name == order[-1] else "left")
+        for name, V in marks.items()
+        if velocities.min() <= V <= velocities.max()
+    ]
+    legend_title = "smooth bodies" if law is None else "smooth bodies, and fits"
+    return Figure(title, [cor_chart(IMPACT_VELOCITY.axis, series)], legend_title)
+
+
+_MOST_ENTRIES = 2 * len(PALETTE)  # each colour with two kinds of lines
+
+
+def mixture_figure(title: str, laws: Sequence[Law]) -> Figure:
+    """Plot the COR: a chart for every pair of materials, with a line for every pair of sizes.
+
+    Every line has an entry in the legend, its reduced radius R*. In a chart of more than
+    `_MOST_ENTRIES` lines, grey lines between the labelled ones share one entry.
+    """
+    families = families_of(laws)
+    names = [f"{first} on {second}" if len(families) > 1 else "" for first, second in families]
+    charts = [
+        cor_chart(IMPACT_VELOCITY.axis, _lines(members), name)
+        for name, members in zip(names, families.values(), strict=True)
+    ]
+    return Figure(title, charts)
+
+
+def _lines(laws: Sequence[Law]) -> list[Line]:
+    ordered = sorted(laws, key=lambda law: law.radius)
+    step = math.ceil(len(ordered) / _MOST_ENTRIES)
+    return [
+        _line(law, number // step) if number % step == 0 else _line(law, None)
+        for number, law in enumerate(ordered)
+    ]
+
+
+def _line(law: Law, place: int | None) -> Line:
+    """A line with the `place`th style and its own entry in the legend; grey if `place` is None."""
+    name = f"R* = {quantity(law.radius, 'm')}"
+    V, e = law.column("velocity"), law.column("restitution")
+    if place is None:
+        return Line(V, e, "R* between these", name=name, color=GREY)
+    dashes, color = divmod(place, len(PALETTE))
+    return Line(V, e, name, name=name, color=PALETTE[color], dash=(SOLID, DASHED)[dashes])
+
+
+def families_of(laws: Sequence[Law]) -> dict[tuple[str, str], list[Law]]:
+    """Group the laws by their two materials; the keys are the names of the materials."""
+    families: dict[tuple[str, str], list[Law]] = {}
+    for law in laws:
+        families.setdefault((law.first.name, law.second.name), []).append(law)
+    return families
+
+
+def fit_figure(fit: Fit) -> Figure:
+    """Plot measured COR with its standard deviations, and the fitted COR with its 95 % band."""
+    curve, measured = fit.curve, fit.measured
+    series: list[Series] = []
+    if curve.velocity.size > 1:
+        low, high = curve.restitution - curve.half_band, curve.restitution + curve.half_band
+        band = low.clip(0.0, 1.0), high.clip(0.0, 1.0)
+        series.append(Band(curve.velocity, *band, "95 % interval of the fit", color=BLUE))
+    series.append(Line(curve.velocity, curve.restitution, "fitted", color=BLUE))
+    series.append(
+        Points(
+            measured.velocity,
+            measured.restitution,
+            "measured",
+            color=ORANGE,
+            error=measured.deviation,
+            error_label="" if measured.deviation is None else "standard deviation",
+            open=~fit.resolved,
+            open_label="measured, contact not resolved",
+        )
+    )
+    values = ", ".join(
+        f"{parameter.key} {parameter.text(factor)}"
+        for parameter, factor in zip(fit.parameters, fit.factors, strict=True)
+    )
+    return Figure(values, [cor_chart(IMPACT_VELOCITY.axis, series)])
+
+
+MOST_LINES = 60  # largest number of lines in a figure; more cannot be distinguished
+
+
+def points_with(case: StoredCase, abscissa: Abscissa) -> list[Point]:
+    """Select the points of the curve of `case` at which `abscissa` has a value."""
+    name = abscissa.variable
+    return [point for point in case.curve.points if not math.isnan(getattr(point, name))]
+
+
+def study_figure(cases: Sequence[StoredCase], abscissa: Abscissa) -> Figure:
+    """Plot COR against `abscissa` for the first `MOST_LINES` of `cases`."""
+    series = []
+    for number, case in enumerate(cases[:MOST_LINES]):
+        points = points_with(case, abscissa)
+        if not points:
+            continue
+        # The label shows only the last part of each swept key: "rms" for "roughness.rms".
+        label = ", ".join(f"{key.rsplit('.', 1)[-1]} {value}" for key, value in case.swept.items())
+        series.append(
+            Points(
+                abscissa.scale * array(points, abscissa.variable),
+                array(points, "restitution"),
+                label,
+                color=PALETTE[number % len(PALETTE)],
+                symbol=SYMBOLS[number % len(SYMBOLS)],
+                joined=True,
+                open=np.array([not point.resolved for point in points]),
+            )
+        )
+    return Figure("", [cor_chart(abscissa.axis, series)])

@@ -102,8 +102,8 @@ def _full_slip(results: xr.Dataset) -> list[Series]:
     if (last := float(angles[-1])) > begins:
         beyond = np.linspace(begins, last, _CURVE)
         along = [
-            full_slip_restitution(friction, float(np.interp(each, angles, e)), float(each))
-            for each in beyond
+            full_slip_restitution(friction, float(np.interp(angle, angles, e)), float(angle))
+            for angle in beyond
         ]
         label = "full slip, closed form"
         slip.append(Line(np.degrees(beyond), np.array(along), label, color=GREY, dash=DASHED))

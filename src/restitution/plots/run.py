@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from restitution.contact.checks.resolution import NODES_PER_PATCH
+from restitution.display import quantity
 from restitution.laws.references import (
     Reference,
     force_references,
@@ -81,31 +82,31 @@ def has_map(results: xr.Dataset) -> bool:
 def load_displacement(results: xr.Dataset) -> Figure:
     """Plot force against indentation (loading and unloading), on linear and logarithmic axes."""
     depth, force = 1e6 * results["indentation"].values, results["force"].values
-    beside = _references(force_references(results), 1e6)
+    references = _references(force_references(results), 1e6)
     if "smooth_force" in results and results.attrs["derived_yield_pressure_Pa"] != "None":
         x, y = 1e6 * results["smooth_indentation"].values, results["smooth_force"].values
-        beside.insert(0, Line(x, y, _SMOOTH, color=GREY))
+        references.insert(0, Line(x, y, _SMOOTH, color=GREY))
     back = unloading_lines(results)
     loading = Points(np.append(0, depth), np.append(0, force), "loading", joined=True)
     across, up = (_span([loading, *back], name) for name in ("x", "y"))
     linear = Chart(
         Axis("indentation", "µm", low=across[0], high=across[1]),
         Axis("normal force", "N", low=up[0], high=up[1]),
-        [loading, *back, *beside, *([Mark("y", 0.0)] if up[0] < 0 else [])],
+        [loading, *back, *references, *([Mark("y", 0.0)] if up[0] < 0 else [])],
     )
     carrying = force[force > 0]
     ends = (0.3 * carrying.min(), 2 * carrying.max()) if carrying.size else (None, None)
-    shown = [depth, *(each.x[(each.x > 0) & (each.y >= (ends[0] or 0))] for each in back)]
+    shown = [depth, *(line.x[(line.x > 0) & (line.y >= (ends[0] or 0))] for line in back)]
     logarithmic = Chart(
         Axis("indentation", "µm", "log", 0.8 * np.concatenate(shown).min(), 1.3 * depth.max()),
         Axis("normal force", "N", "log", *ends),
         [
             Points(depth, force, "loading", joined=True),
             *(
-                Line(each.x[each.y > 0], each.y[each.y > 0], each.label, each.name, each.color)
-                for each in back
+                Line(line.x[line.y > 0], line.y[line.y > 0], line.label, line.name, line.color)
+                for line in back
             ),
-            *beside,
+            *references,
         ],
         title="on logarithmic axes",
     )
@@ -187,22 +188,28 @@ def restitution_figure(results: xr.Dataset, abscissa: Abscissa) -> Figure:
     return Figure(results.attrs.get("title", ""), [cor_chart(axis, series)])
 
 
-def _references(found: list[Reference], scale: float) -> list[Series]:
+def _references(references: list[Reference], scale: float) -> list[Series]:
     return [
-        Line(scale * each.x, each.y, each.label, color=GREY, dash=DASHED if each.yields else DOTTED)
-        for each in found
+        Line(
+            scale * reference.x,
+            reference.y,
+            reference.label,
+            color=GREY,
+            dash=DASHED if reference.yields else DOTTED,
+        )
+        for reference in references
     ]
 
 
 def unloading_lines(results: xr.Dataset) -> list[Line]:
     """Make a line of each unloading curve, without the NaN values that pad it."""
-    found = []
+    lines = []
     for k in range(results.sizes.get("unloading", 0)):
         x, y = (results[f"unloading_{name}"][k].values for name in ("indentation", "force"))
         known, start = np.isfinite(y), 1e6 * float(results["unloading_from"][k])
         name = f"unloading from {start:.3g} µm"
-        found.append(Line(1e6 * x[known], y[known], "unloading", name, ORANGE))
-    return found
+        lines.append(Line(1e6 * x[known], y[known], "unloading", name, ORANGE))
+    return lines
 
 
 def _span(series: list[Points | Line], name: str) -> tuple[float, float | None]:
@@ -211,7 +218,34 @@ def _span(series: list[Points | Line], name: str) -> tuple[float, float | None]:
     The lower end is zero or, if a value is negative, the smallest value with a margin. The upper
     end is the largest value with a margin, or None if all values are zero.
     """
-    values: Array = np.concatenate([getattr(each, name) for each in series])
+    values: Array = np.concatenate([getattr(part, name) for part in series])
     low, high = float(values.min()), float(values.max())
     margin = 0.05 * (high - low)
     return (low - margin if low < 0 else 0.0), (high + margin or None)
+
+
+_SHOWN = 4  # number of depths that are drawn
+
+
+def depth_maps_figure(maps: xr.Dataset, title: str, *, downwards: bool = False) -> Figure:
+    """Draw the pressure at up to four depths of `maps` (from `maps.nc`), on one part of the grid.
+
+    `downwards` says whether y increases towards the bottom.
+    """
+    pressure = maps["pressure"]
+    along = str(pressure.dims[0])
+    touched = np.argwhere(pressure.values.any(axis=0))
+    if not touched.size:
+        return Figure(title, [])
+    low, high = np.maximum(touched.min(axis=0) - _RIM, 0), touched.max(axis=0) + _RIM + 1
+    x, y = (slice(*ends) for ends in zip(low, high, strict=True))
+    X, Y = 1e6 * maps["x"].values[x], 1e6 * maps["y"].values[y]
+    count = maps.sizes[along]
+    panels = []
+    for number in np.unique(np.linspace(0, count - 1, _SHOWN).round().astype(int)):
+        values = 1e-6 * pressure.values[number, x, y]
+        depth = quantity(float(maps[along][number]), "m")
+        shown = np.where(values != 0, values, np.nan)
+        axis = Axis("pressure", "MPa")
+        panels.append(Map(X, Y, shown, axis, title=f"at {depth}", downwards=downwards))
+    return Figure(title, panels)

@@ -96,10 +96,10 @@ def write_figure(path: Path, figure: Figure, file_format: Format = "png") -> Pat
 def draw(figure: Figure) -> Drawing:
     """Draw `figure` in matplotlib, with one legend for all panels."""
     labels = list(dict.fromkeys(e for panel in figure.panels for e in legend_entries(panel)))
-    columns, beside = 2 * len(figure.panels), len(labels) > _MOST_BELOW
+    columns, right_of_charts = 2 * len(figure.panels), len(labels) > _MOST_BELOW
     sizes = [_MAP if isinstance(panel, Map) else _CHART for panel in figure.panels]
     width, height = sizes[0][0] + _SECOND * (len(sizes) - 1), max(size[1] for size in sizes)
-    if beside:
+    if right_of_charts:
         width, height = width + _SIDE, max(height, _ROW * len(labels))
     else:
         height += _ROW * math.ceil(len(labels) / columns)
@@ -125,16 +125,16 @@ def draw(figure: Figure) -> Drawing:
             title=figure.legend_title or None,
             handlelength=3.0,
             alignment="left",
-            loc="outside right center" if beside else "outside lower center",
-            ncols=1 if beside else columns,
+            loc="outside right center" if right_of_charts else "outside lower center",
+            ncols=1 if right_of_charts else columns,
         )
     return drawing
 
 
 def _draw_chart(axes: Axes, chart: Chart, handles: dict[str, Any]) -> None:
     right = axes.twinx() if chart.right is not None else axes
-    for each in chart.series:
-        _draw_series(right if isinstance(each, Line) and each.right else axes, each, handles)
+    for part in chart.series:
+        _draw_series(right if isinstance(part, Line) and part.right else axes, part, handles)
     x, y = chart.x, chart.y
     axes.set(xlabel=_escaped(x.title), xscale=x.scale, xlim=(x.low, x.high))
     axes.set(ylabel=_escaped(y.title), yscale=y.scale, ylim=(y.low, y.high))
@@ -172,25 +172,25 @@ def _number(value: float, *, plain: bool) -> str:
     return rf"$10^{{{exponent}}}$" if digits == "1" else rf"${digits}\times10^{{{exponent}}}$"
 
 
-def _draw_series(axes: Axes, each: Series, handles: dict[str, Any]) -> None:
-    if isinstance(each, Mark):
-        _draw_mark(axes, each)
-    elif isinstance(each, Band):
-        band = axes.fill_between(each.x, each.low, each.high, color=each.color, alpha=0.25, lw=0)
-        handles.setdefault(each.label, band)
-    elif isinstance(each, Line):
+def _draw_series(axes: Axes, part: Series, handles: dict[str, Any]) -> None:
+    if isinstance(part, Mark):
+        _draw_mark(axes, part)
+    elif isinstance(part, Band):
+        band = axes.fill_between(part.x, part.low, part.high, color=part.color, alpha=0.25, lw=0)
+        handles.setdefault(part.label, band)
+    elif isinstance(part, Line):
         (line,) = axes.plot(
-            each.x,
-            each.y,
-            color=each.color,
-            lw=each.width,
-            ls=(0, each.dash) if each.dash else "-",
-            marker="o" if np.size(each.x) == 1 else "",
-            drawstyle="steps-mid" if each.step else "default",
+            part.x,
+            part.y,
+            color=part.color,
+            lw=part.width,
+            ls=(0, part.dash) if part.dash else "-",
+            marker="o" if np.size(part.x) == 1 else "",
+            drawstyle="steps-mid" if part.step else "default",
         )
-        handles.setdefault(each.label, line)
+        handles.setdefault(part.label, line)
     else:
-        _draw_points(axes, each, handles)
+        _draw_points(axes, part, handles)
 
 
 def _draw_points(axes: Axes, points: Points, handles: dict[str, Any]) -> None:
@@ -253,8 +253,8 @@ def _draw_map(drawing: Drawing, axes: Axes, part: Map) -> None:
     axes.set(xlabel="x (µm)", ylabel="y (µm)")
     if part.downwards:
         axes.invert_yaxis()
-    beside = axes.inset_axes((1.03, 0.0, 0.05, 1.0))  # a colour bar as high as the map
-    drawing.colorbar(image, cax=beside, label=_escaped(part.quantity.title))
+    bar = axes.inset_axes((1.03, 0.0, 0.05, 1.0))  # a colour bar as high as the map
+    drawing.colorbar(image, cax=bar, label=_escaped(part.quantity.title))
 
 
 def _cell(centres: Array) -> float:

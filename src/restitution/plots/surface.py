@@ -81,12 +81,14 @@ def spectrum_figure(spectra: list[DirectedSpectrum]) -> Figure:
     """
     series: list[Line] = []
     largest = 0.0
-    for each, color, dash in zip(spectra, PALETTE, (SOLID, DOTTED, DASHED), strict=False):
-        q, C = 1e-6 * each.spectrum.wave_number, 1e24 * each.spectrum.density
+    for spectrum, color, dash in zip(spectra, PALETTE, (SOLID, DOTTED, DASHED), strict=False):
+        q, C = 1e-6 * spectrum.spectrum.wave_number, 1e24 * spectrum.spectrum.density
         largest = max(largest, C.max(initial=0.0))
         # A logarithmic axis cannot show zero.
-        series.append(Line(q, np.where(C > 0, C, np.nan), each.directions, color=color, dash=dash))
-    drawn = np.concatenate([each.y[each.y > _ROUNDING * largest] for each in series])
+        series.append(
+            Line(q, np.where(C > 0, C, np.nan), spectrum.directions, color=color, dash=dash)
+        )
+    drawn = np.concatenate([spectrum.y[spectrum.y > _ROUNDING * largest] for spectrum in series])
     low, high = (0.3 * drawn.min(), 3 * drawn.max()) if drawn.size else (None, None)
     return Figure(
         "",

@@ -1,7 +1,7 @@
 """The claims of Ghanbarzadeh et al. (2019) on each figure, compared with the bundled studies.
 
 Each function in `CLAIMS` judges one claim of this paper. It receives the studies by name, compares
-their results with a threshold for agreement, and returns a `Finding`.
+their results with a threshold for agreement, and returns a `Judgement`.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _NEAR = 0.05  # largest relative difference at which COR counts as that of the s
 
 
 @dataclass(frozen=True)
-class Finding:
+class Judgement:
     """A claim of the paper and what the computed results say about it.
 
     `found` describes the result in words. `number` is the value that decides whether the results
@@ -49,7 +49,7 @@ class Finding:
 
 
 @dataclass(frozen=True)
-class Curve:
+class CaseCurve:
     """One case of a study, with the depths that it reached."""
 
     label: str
@@ -60,19 +60,19 @@ class Curve:
     resolved: NDArray[np.bool_]
 
 
-def curves(study: xr.Dataset) -> list[Curve]:
+def curves(study: xr.Dataset) -> list[CaseCurve]:
     """Return the complete cases of a study, labelled with their swept values."""
     dims = [str(dim) for dim in study["restitution"].dims if dim != "depth"]
     stacked = study.stack(_case=dims).transpose("_case", "depth", ...)
     keys = [str(key) for key in study.coords if key != "case" and "depth" not in study[key].dims]
-    found = []
+    result = []
     for k in np.flatnonzero(stacked["status"].values == "complete"):
         case = stacked.isel(_case=k)
         label = ", ".join(_as_written(study[key])[case[key].item()] for key in keys)
         have = np.isfinite(case["indentation"].values)
         depth, cor, force, pull_off, resolved = (case[name].values[have] for name in _VARIABLES)
-        found.append(Curve(label, depth, cor, force, pull_off, resolved.astype(bool)))
-    return found
+        result.append(CaseCurve(label, depth, cor, force, pull_off, resolved.astype(bool)))
+    return result
 
 
 def _as_written(coordinate: xr.DataArray) -> dict[float | str, str]:
@@ -85,14 +85,14 @@ def _as_written(coordinate: xr.DataArray) -> dict[float | str, str]:
     )
 
 
-def rough_and_smooth(study: xr.Dataset) -> tuple[list[Curve], Curve]:
+def rough_and_smooth(study: xr.Dataset) -> tuple[list[CaseCurve], CaseCurve]:
     """Return the rough cases and the smooth case of a study with varied roughness."""
-    found = curves(study)
-    smooth = next(curve for curve in found if curve.label.startswith(SMOOTH))
-    return [curve for curve in found if not curve.label.startswith(SMOOTH)], smooth
+    cases = curves(study)
+    smooth = next(curve for curve in cases if curve.label.startswith(SMOOTH))
+    return [curve for curve in cases if not curve.label.startswith(SMOOTH)], smooth
 
 
-def _resolved(*of: Curve) -> str:
+def _resolved(*of: CaseCurve) -> str:
     return _count(np.concatenate([curve.resolved for curve in of]))
 
 
@@ -106,10 +106,10 @@ def _verdict(agrees: bool, in_part: bool = False) -> Verdict:
     return "agrees in part" if in_part else "does not agree"
 
 
-def _figure_5(studies: Studies) -> Finding:
+def _figure_5(studies: Studies) -> Judgement:
     (curve,) = curves(studies["hertz"])
     off = float(np.abs(curve.force / Hertz(R, E_STAR).force(curve.depth) - 1).max())
-    return Finding(
+    return Judgement(
         "5",
         "The elastic solution agrees with Hertz's.",
         f"The force is within {off:.2%} of Hertz's at all depths.",
@@ -119,16 +119,16 @@ def _figure_5(studies: Studies) -> Finding:
     )
 
 
-def _figure_6(studies: Studies) -> Finding:
+def _figure_6(studies: Studies) -> Judgement:
     off = {}
     smooth = ThorntonNing(R, E_STAR, P_Y)
     yielded = 2 * float(smooth.first_yield.indentation)
-    found = curves(studies["thornton-ning"])
-    for curve in found:
+    cases = curves(studies["thornton-ning"])
+    for curve in cases:
         deep = curve.depth > yielded
         law = smooth.loading_force(curve.depth[deep])
         off[curve.label] = float(np.max(np.abs(curve.force[deep] / law - 1)))
-    return Finding(
+    return Judgement(
         "6",
         "Loading and unloading with a yield cut-off agree with Thornton and Ning (1998).",
         "With the pressure truncated at p_y as in their theory, the loading force is within "
@@ -137,17 +137,17 @@ def _figure_6(studies: Studies) -> Finding:
         "the model, not the accuracy of the solution.",
         off["truncated"],
         _verdict(off["truncated"] < 0.02),
-        _resolved(*found),
+        _resolved(*cases),
     )
 
 
-def _figure_7(studies: Studies) -> Finding:
+def _figure_7(studies: Studies) -> Judgement:
     (curve,) = curves(studies["jkr"])
     jkr = JKR(R, E_STAR, 0.09)
     loading = float(np.abs(curve.force / jkr.force(curve.depth) - 1).max())
     off = np.abs(curve.pull_off / jkr.pull_off_force - 1)
     worst, deepest = max(loading, float(off.max())), float(off[-1])
-    return Finding(
+    return Judgement(
         "7",
         "Adhesive elastic contact agrees with the JKR theory.",
         f"The force in loading is within {loading:.1%} of the JKR force. The pull-off force is "
@@ -160,43 +160,43 @@ def _figure_7(studies: Studies) -> Finding:
     )
 
 
-def _figure_8(studies: Studies) -> Finding:
-    found = curves(studies["smooth-yield"])
-    tops = [int(curve.cor.argmax()) for curve in found]
-    inside = [0 < top < curve.cor.size - 1 for top, curve in zip(tops, found, strict=True)]
+def _figure_8(studies: Studies) -> Judgement:
+    cases = curves(studies["smooth-yield"])
+    tops = [int(curve.cor.argmax()) for curve in cases]
+    inside = [0 < top < curve.cor.size - 1 for top, curve in zip(tops, cases, strict=True)]
     where = ", ".join(
         f"{curve.label}: {curve.cor[top]:.3f} at {1e9 * curve.depth[top]:.3g} nm"
-        for top, curve in zip(tops, found, strict=True)
+        for top, curve in zip(tops, cases, strict=True)
     )
-    return Finding(
+    return Judgement(
         "8",
         "For both yield stresses COR first increases with indentation and then reduces.",
         f"COR is largest between the ends of the curve in {sum(inside)} of {len(inside)} cases "
         f"({where}).",
         sum(inside) / len(inside),
         _verdict(all(inside), any(inside)),
-        _resolved(*found),
+        _resolved(*cases),
     )
 
 
-def _figure_9(studies: Studies) -> Finding:
-    found = curves(studies["smooth-energy"])
-    cor = np.array([curve.cor for curve in found])
+def _figure_9(studies: Studies) -> Judgement:
+    cases = curves(studies["smooth-energy"])
+    cor = np.array([curve.cor for curve in cases])
     spread = np.ptp(cor, axis=0)
-    deep = found[0].depth > 100e-9
+    deep = cases[0].depth > 100e-9
     shallow, left = float(spread.max()), float(spread[deep].max())
-    return Finding(
+    return Judgement(
         "9",
         "For smooth spheres interface energy affects COR at small indentations only.",
         f"COR differs between the energies by up to {shallow:.2f} over all depths, and by up to "
         f"{left:.3f} beyond 100 nm.",
         left,
         _verdict(left < 0.05 < shallow),
-        _resolved(*found),
+        _resolved(*cases),
     )
 
 
-def _stages(studies: Studies) -> Finding:
+def _stages(studies: Studies) -> Judgement:
     rough, _ = rough_and_smooth(studies["roughness"])
     complete = []
     for curve in rough:
@@ -205,7 +205,7 @@ def _stages(studies: Studies) -> Finding:
         rises = curve.cor[high] > curve.cor[low] + 0.02
         complete.append(low > 0 and rises and high < curve.cor.size - 1)
     names = ", ".join(c.label for c, whole in zip(rough, complete, strict=True) if whole) or "none"
-    return Finding(
+    return Judgement(
         "10",
         "COR of rough spheres has three stages: it falls as asperities yield, rises as the "
         "bulk takes over, and falls as the bulk yields.",
@@ -217,13 +217,13 @@ def _stages(studies: Studies) -> Finding:
     )
 
 
-def _shallow_merging(studies: Studies) -> Finding:
+def _shallow_merging(studies: Studies) -> Judgement:
     rough, smooth = rough_and_smooth(studies["roughness"])
     # Skip depths where the smooth sphere sticks: the relative difference is undefined.
     shallow = (smooth.depth <= 8e-9) & (smooth.cor > 0)
     off = max(float(np.abs(c.cor[shallow] / smooth.cor[shallow] - 1).max()) for c in rough)
     flags = np.concatenate([c.resolved[shallow] for c in rough])
-    return Finding(
+    return Judgement(
         "10",
         "Below 8 nm COR merges with the smooth sphere's, for every roughness.",
         f"Up to 8 nm, COR differs by up to {off:.0%} from the smooth sphere's."
@@ -234,13 +234,13 @@ def _shallow_merging(studies: Studies) -> Finding:
     )
 
 
-def _shallow_trend(studies: Studies) -> Finding:
+def _shallow_trend(studies: Studies) -> Judgement:
     rough, smooth = rough_and_smooth(studies["roughness"])
     shallow = (smooth.depth >= 8e-9) & (smooth.depth <= 50e-9)
     cor = np.array([curve.cor[shallow] for curve in rough])
     off = float((np.ptp(cor, axis=0) / cor.mean(axis=0)).max())
     flags = np.concatenate([c.resolved[shallow] for c in rough])
-    return Finding(
+    return Judgement(
         "10",
         "Below 50 nm COR follows the same trend for every roughness.",
         f"Between 8 and 50 nm, COR differs between roughnesses by up to {off:.0%} of its mean."
@@ -261,7 +261,7 @@ def _single_nodes(flags: NDArray[np.bool_]) -> str:
     )
 
 
-def critical_indentation(curve: Curve, smooth: Curve) -> float:
+def critical_indentation(curve: CaseCurve, smooth: CaseCurve) -> float:
     """Depth (m) beyond which COR differs by at most 5 % from the smooth sphere; NaN if not reached.
 
     The result lies between the last depth at which the difference exceeds 5 % and the next depth.
@@ -291,13 +291,13 @@ def critical_indentations(study: xr.Dataset) -> dict[str, tuple[float, float]]:
     }
 
 
-def _figure_11(studies: Studies) -> Finding:
+def _figure_11(studies: Studies) -> Judgement:
     from scipy.stats import linregress
 
-    found = critical_indentations(studies["critical"])
+    indentations = critical_indentations(studies["critical"])
     resolved = _resolved(*curves(studies["critical"]))
-    reached = np.array([pair for pair in found.values() if not math.isnan(pair[1])])
-    count = f"{len(reached)} of {len(found)} surfaces"
+    reached = np.array([pair for pair in indentations.values() if not math.isnan(pair[1])])
+    count = f"{len(reached)} of {len(indentations)} surfaces"
     claim = "The critical indentation i_cr,max depends linearly on Rq/R."
     roughnesses = len(set(reached[:, 0])) if len(reached) else 0
     if roughnesses < 3:
@@ -308,10 +308,10 @@ def _figure_11(studies: Studies) -> Finding:
                 for ratio in sorted(set(reached[:, 0]))
             )
             words += f"Means: {means}."
-        return Finding("11", claim, words, math.nan, "not decided", resolved)
+        return Judgement("11", claim, words, math.nan, "not decided", resolved)
     line = linregress(reached[:, 0], reached[:, 1])
     r2 = float(line.rvalue**2)
-    return Finding(
+    return Judgement(
         "11",
         claim,
         f"i_cr,max = {1e3 * line.slope:.2g} mm · Rq/R {1e6 * line.intercept:+.2g} µm with "
@@ -323,14 +323,14 @@ def _figure_11(studies: Studies) -> Finding:
     )
 
 
-def _figure_12(studies: Studies) -> Finding:
+def _figure_12(studies: Studies) -> Judgement:
     rough, smooth = rough_and_smooth(studies["roughness"])
     carries = smooth.cor > 0
     most = [
         float(((smooth.cor - c.cor) / np.where(carries, smooth.cor, 1))[carries].max())
         for c in rough
     ]
-    return Finding(
+    return Judgement(
         "12",
         "Rougher surfaces deviate more from the smooth one, and lose more energy.",
         "Largest (COR_smooth − COR_rough)/COR_smooth: "
@@ -342,12 +342,12 @@ def _figure_12(studies: Studies) -> Finding:
     )
 
 
-def _figure_13(studies: Studies) -> Finding:
+def _figure_13(studies: Studies) -> Judgement:
     soft, hard = sorted(curves(studies["rough-yield"]), key=lambda c: float(c.label.split()[0]))
     deep = soft.depth > 50e-9
     ratio = soft.cor / hard.cor
     beyond = float(ratio[deep].mean())
-    return Finding(
+    return Judgement(
         "13",
         "Yield stress dramatically affects COR of rough spheres.",
         f"Beyond 50 nm, COR at 150 MPa is on average {beyond:.0%} of COR at 750 MPa. Below 50 nm "
@@ -359,19 +359,19 @@ def _figure_13(studies: Studies) -> Finding:
     )
 
 
-def _figure_14(studies: Studies) -> Finding:
+def _figure_14(studies: Studies) -> Judgement:
     rough = curves(studies["rough-energy"])
     smooth = curves(studies["smooth-energy"])
     # Compare only depths in the range of both studies.
     depth = rough[0].depth
     depth = depth[(depth >= smooth[0].depth[0]) & (depth <= smooth[0].depth[-1])]
 
-    def spread(of: list[Curve]) -> Array:
+    def spread(of: list[CaseCurve]) -> Array:
         cor = [np.interp(np.log(depth), np.log(c.depth), c.cor) for c in (of[0], of[-1])]
         return np.asarray(np.abs(cor[0] - cor[1]))
 
     of_rough, of_smooth = spread(rough), spread(smooth)
-    return Finding(
+    return Judgement(
         "14",
         "Interface energy has less effect on COR of rough spheres than of smooth ones.",
         f"Between 0.01 and 0.09 J/m², COR of rough spheres differs on average by "
@@ -383,7 +383,7 @@ def _figure_14(studies: Studies) -> Finding:
     )
 
 
-CLAIMS: tuple[Callable[[Studies], Finding], ...] = (
+CLAIMS: tuple[Callable[[Studies], Judgement], ...] = (
     _figure_5,
     _figure_6,
     _figure_7,

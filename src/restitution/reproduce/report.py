@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from restitution.pages.methods import methods
-from restitution.pages.page import Cell, Drawing, Page, Table, write_page
+from restitution.pages.page import Cell, Drawing, Page, PageTable, write_page
 from restitution.plots.figure import (
     DASHED,
     GREY,
@@ -29,8 +29,8 @@ from restitution.reproduce.claims import (
     P_Y,
     SMOOTH,
     Array,
-    Curve,
-    Finding,
+    CaseCurve,
+    Judgement,
     R,
     critical_indentations,
     curves,
@@ -60,7 +60,7 @@ _OPEN = (
 )
 
 
-def write_reproduction(out: Path, size: Size) -> tuple[Path, list[Finding]]:
+def write_reproduction(out: Path, size: Size) -> tuple[Path, list[Judgement]]:
     """Write `report.html` from the studies in `out`; return its path and the findings."""
     stored = {name: StudyResults(out / name) for name in NAMES}
     studies = {name: study.dataset for name, study in stored.items()}
@@ -74,12 +74,12 @@ def write_reproduction(out: Path, size: Size) -> tuple[Path, list[Finding]]:
         intro=[PAPER, f"Size: {size}. Claims: {judged}."],
         warnings=_warnings(size),
         parts=[
-            Table(
+            PageTable(
                 "Claims",
                 ["figure", "verdict", "claim", "result", "number", "depths resolved"],
                 [[f.figure, f.verdict, f.claim, f.found, f.number, f.resolved] for f in findings],
             ),
-            Table("What the paper leaves open", ["input", "here", "in the paper"], _OPEN),
+            PageTable("What the paper leaves open", ["input", "here", "in the paper"], _OPEN),
             *_drawings(studies, findings),
             methods(stored["roughness"].run("case-00002").summary),
         ],
@@ -100,7 +100,7 @@ def _warnings(size: Size) -> list[str]:
     ]
 
 
-def _drawings(studies: dict[str, xr.Dataset], findings: list[Finding]) -> list[Drawing]:
+def _drawings(studies: dict[str, xr.Dataset], findings: list[Judgement]) -> list[Drawing]:
     def words(figure: str) -> str:
         return " ".join(f"{f.found} ({f.verdict})" for f in findings if f.figure == figure)
 
@@ -176,7 +176,7 @@ def _lines(
     title: str,
     y: str,
     caption: str,
-    lines: Sequence[tuple[Curve, Array]],
+    lines: Sequence[tuple[CaseCurve, Array]],
     laws: Sequence[tuple[str, Callable[[Array], Array]]] = (),
     *,
     scale: Literal["linear", "log"] = "linear",
@@ -212,7 +212,7 @@ def _lines(
         Figure(title, [chart]),
         f"{title}: {y} against indentation for {len(lines)} cases",
         caption + " Open markers: contacts that the grid does not resolve.",
-        Table(title, ["case", "indentation (nm)", y, "resolved"], rows),
+        PageTable(title, ["case", "indentation (nm)", y, "resolved"], rows),
     )
 
 
@@ -227,5 +227,5 @@ def _critical(study: xr.Dataset, caption: str) -> Drawing:
         f"{title} against roughness over radius for {len(points)} surfaces",
         caption + " A surface is not drawn if, at the deepest indentation, its COR differs by more "
         "than 5 % from the smooth sphere's.",
-        Table(title, ["Rq, seed", "Rq/R", "i_cr,max (µm)"], [list(p) for p in points]),
+        PageTable(title, ["Rq, seed", "Rq/R", "i_cr,max (µm)"], [list(p) for p in points]),
     )

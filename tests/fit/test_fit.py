@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from restitution.calibration.findings import combination, findings, identifiable
-from restitution.calibration.fit import fit
-from restitution.calibration.measured import Measured
-from restitution.calibration.uncertainty import MODEL_SHARES
 from restitution.case.case_file import parse_case
 from restitution.errors import CaseError
+from restitution.fit.findings import combination, findings, identifiable
+from restitution.fit.fit import fit
+from restitution.fit.measured import Measured
+from restitution.fit.uncertainty import MODEL_SHARES
 from restitution.theory import ThorntonNing
 from tolerance import approx
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from restitution import collide, loading_path
-from restitution.calibration.fit import fit
-from restitution.calibration.measured import Measured
 from restitution.case.case_file import parse_case
+from restitution.fit.fit import fit
+from restitution.fit.measured import Measured
 
 SMOOTH = """
 [first]

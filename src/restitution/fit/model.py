@@ -1,10 +1,7 @@
 """COR of a case over a range of impact velocities, as a function of the free parameters.
 
-A curve is COR of one surface against impact velocity. The contact is computed at depths (maximum
-indentations) that form a geometric sequence. The impact velocities of these depths cover the range.
-Between the depths, the ratio W_u/W_l of unloading work to loading work is interpolated
-(`RatioCurve`). Without adhesion, the depths of a surface (at the same `Cost`) do not shift when the
-parameters change. The interpolated COR is then a smooth function of the parameters.
+The depths of a curve form a geometric sequence, between which W_u/W_l is interpolated. Without
+adhesion, the depths do not shift when parameters change, so COR is a smooth function of them.
 """
 
 from __future__ import annotations
@@ -20,7 +17,6 @@ import numpy as np
 import tomli_w
 from numpy.typing import NDArray
 
-from restitution.calibration.parameters import Parameter, with_factors
 from restitution.case.case import DEPTHS, Case
 from restitution.case.case_file import parse_case
 from restitution.case.derived import deepest_indentation
@@ -34,14 +30,14 @@ from restitution.curve.columns import array
 from restitution.curve.curve import Curve
 from restitution.curve.follow import Load, Unloading, follow
 from restitution.curve.point import Point
+from restitution.fit.parameters import Parameter, with_factors
 from restitution.runs.companions import coarser_contact
 from restitution.runs.log import Say, ignore
 from restitution.runs.messages import naming_keys, require_possible
 
 Array = NDArray[np.float64]
 Cost = Literal["full", "coarser", "quick"]
-"""Cost of a curve: "full" uses the grid of the case and all surfaces, "coarser" uses cells twice as
-large, and "quick" uses cells twice as large and only `_FEW` surfaces."""
+"""The grid of the case, cells twice as large, or these cells and only `_FEW` surfaces."""
 
 _RATIO = 1.3  # ratio of each depth to the previous depth
 SURFACES = 8  # number of surfaces of a curve if `realisations` of the case is 1
@@ -137,10 +133,9 @@ def _velocity(point: Point) -> float:
 class CaseModel:
     """COR of a case from velocity `low` to `high` (m/s), as a function of the free `parameters`.
 
-    `content` holds the tables of the case file. File names in it are relative to `folder`. The
-    argument x of the methods holds ln(value/first guess) of each parameter. COR is the mean over
-    several random surfaces, because no single random surface equals the measured surface. All
-    these surfaces have the statistics that the case gives.
+    File names in the tables `content` are relative to `folder`. The argument x of the methods holds
+    ln(value/first guess) of each parameter. COR is the mean over several random surfaces with the
+    statistics of the case, because no single one equals the measured surface.
     """
 
     content: Mapping[str, Any]
@@ -154,11 +149,7 @@ class CaseModel:
     _first_depths: dict[tuple[int, Cost], float] = field(default_factory=dict)
 
     def text(self, x: Array, velocities: Sequence[float] | None = None, digits: int = 17) -> str:
-        """Return the text of the case file with the parameters `x`.
-
-        `velocities` (m/s; None means `low` and `high`) replace the depths of the case. `digits` is
-        the number of significant digits of the free keys.
-        """
+        """The case file with `x` (`digits` significant digits) and velocities (m/s) as depths."""
         tables = with_factors(self.content, self.parameters, np.exp(x), digits)
         for name in DEPTHS:
             tables.pop(name, None)
@@ -167,14 +158,9 @@ class CaseModel:
         return tomli_w.dumps(tables)
 
     def case(self, x: Array) -> Case:
-        """Make the case with the parameters `x`. Raises `CaseError`."""
         return parse_case(self.text(x))
 
     def at(self, x: Array, cost: Cost = "full") -> Mean:
-        """Compute the curve with the parameters `x`, averaged over the surfaces.
-
-        Raises the errors of `curve_of`.
-        """
         key = (x.tobytes(), cost)
         if key in self._known:
             return self._known[key]
@@ -195,39 +181,21 @@ class CaseModel:
 
     @property
     def surfaces(self) -> int:
-        """Number of surfaces over which COR is averaged.
-
-        It is the number of realisations of the case, or `SURFACES` if the case has only one
-        realisation. A case without roughness has one surface.
-        """
         case = self.case(np.zeros(len(self.parameters)))
         if not case.roughness:
             return 1
         return case.realisations if case.realisations > 1 else SURFACES
 
     def require_possible(self, x: Array) -> None:
-        """Raise `CaseError` or `SurfaceError` if the case at parameters `x` has no valid result.
-
-        The case is checked at its deepest indentation. `contact.checks.inputs.impossible` lists the
-        reasons, such as a predicted contact radius above R*.
-        """
         case = self.case(x)
         require_possible(case.contact(self.folder), deepest_indentation(case))
 
     def restitution(self, x: Array, velocity: Array, cost: Cost = "full") -> Array:
-        """COR at `velocity` (m/s) for the parameters `x`, averaged over surfaces.
-
-        `cost` selects the cell size and the number of surfaces (`Cost`).
-        """
         return self.at(x, cost).restitution(velocity)
 
 
 def velocities_to_run(measured: Array) -> list[float]:
-    """Velocities (m/s) of the fitted case.
-
-    They are the measured velocities. If there are more than `MOST_VELOCITIES` of them,
-    `MOST_VELOCITIES` velocities are spread evenly (on a logarithmic scale) over the same range.
-    """
+    """The measured velocities (m/s), or `MOST_VELOCITIES` of the same range if they are more."""
     own = np.unique(measured)
     if own.size <= MOST_VELOCITIES:
         return [float(V) for V in own]

@@ -19,8 +19,8 @@ Array = NDArray[np.float64]
 VELOCITY, RESTITUTION = "velocity_m_per_s", "restitution"
 # Columns with the standard deviation of COR. If the file has both, the first one is used.
 DEVIATIONS = ("restitution_std", "restitution_error")
-# For each column: the test that a value must pass, and the message if the value fails the test.
-# Velocities have the same range as in a case file.
+# For each column: the test of a value, and the message if it fails. The range of velocities is that
+# of a case file.
 _ACCEPTED: dict[str, tuple[Callable[[float], bool], str]] = {
     VELOCITY: (lambda V: 1e-9 <= V <= 1e4, "is not a velocity of 1e-09 to 10000 m/s"),
     RESTITUTION: (lambda e: e >= 0, "is negative"),
@@ -28,9 +28,7 @@ _ACCEPTED: dict[str, tuple[Callable[[float], bool], str]] = {
         DEVIATIONS, (lambda std: 0 < std < 1, "is not a standard deviation between 0 and 1")
     ),
 }
-# A measured COR may exceed 1 by this number of standard deviations, because cutting it at 1 would
-# bias the fit.
-_ABOVE = 3
+_ABOVE = 3  # standard deviations by which COR may exceed 1: cutting it at 1 would bias the fit
 ASSUMED = 0.02
 """Standard deviation of COR that is assumed at first if the table has none."""
 _LARGEST = 2**24  # largest size of a file (bytes)
@@ -38,12 +36,7 @@ _LARGEST = 2**24  # largest size of a file (bytes)
 
 @dataclass(frozen=True)
 class Measured:
-    """Measured COR at impact velocities (m/s, increasing), shape (points,).
-
-    COR may exceed 1 by the noise of the measurement.
-    `deviation` contains the standard deviations of `restitution`, or None if the file has no such
-    column.
-    """
+    """Measured COR at increasing impact velocities (m/s), shape (points,), with its deviation."""
 
     velocity: Array
     restitution: Array
@@ -51,26 +44,22 @@ class Measured:
 
 
 def read_measured(path: Path) -> Measured:
-    """Read a table of measured COR. Raises a `CaseError` that names file, line and column.
-
-    Columns that `Measured` does not need are ignored.
-    """
+    """Read a table of measured COR. Raises a `CaseError` that names file, line and column."""
     rows = _rows(path)
     if not rows:
         raise CaseError(f"{path}: has no rows; write a row for each impact velocity")
     deviations = [name for name in DEVIATIONS if name in rows[0][1]]
     columns = [VELOCITY, RESTITUTION, *deviations[:1]]
-    found = []
+    points = []
     for line, row in rows:
         values = [_number(path, line, row, column) for column in columns]
         _check_restitution(path, line, row, values)
-        found.append(values)
-    V, e, *std = np.array(sorted(found)).T
+        points.append(values)
+    V, e, *std = np.array(sorted(points)).T
     return Measured(V, e, std[0] if std else None)
 
 
 def _rows(path: Path) -> list[tuple[int, dict[str, str]]]:
-    """Read the rows of the file with their line numbers. Check that no needed column is missing."""
     try:
         kind = path.stat()
         if stat.S_ISDIR(kind.st_mode):
@@ -122,7 +111,6 @@ def _number(path: Path, line: int, row: dict[str, str], column: str) -> float:
 
 
 def _check_restitution(path: Path, line: int, row: dict[str, str], values: list[float]) -> None:
-    """Raise `CaseError` if COR is further above 1 than its standard deviation explains."""
     _, e, *given = values
     std = given[0] if given else ASSUMED
     if e <= 1 + _ABOVE * std:

@@ -24,11 +24,7 @@ _CHOICES = {"seed", "realisations", "place", "channel", "crop", "outliers"}
 
 @dataclass(frozen=True)
 class Parameter:
-    """A free key of a case file, such as "roughness.rms".
-
-    `written` is the first guess as written in the file ("0.1 um"). `value` is the first guess in
-    the SI unit `unit`, which is "1" for a dimensionless key.
-    """
+    """A free key; its first guess as `written` ("0.1 um"), and as `value` in the SI unit `unit`."""
 
     key: str
     written: str | float
@@ -36,13 +32,12 @@ class Parameter:
     unit: str
 
     def scaled(self, factor: float, digits: int = 17) -> str | float:
-        """Return the first guess times `factor`, written as in a case file (with its unit)."""
+        """The first guess times `factor`, as in a case file."""
         if isinstance(self.written, str):
             return scaled(self.written, factor, digits)
         return float(f"{self.written * factor:.{digits}g}")
 
     def text(self, factor: float) -> str:
-        """Format the first guess times `factor` with four digits, for messages."""
         return str(self.scaled(factor, 4))
 
 
@@ -52,10 +47,7 @@ def with_factors(
     factors: Array,
     digits: int = 17,
 ) -> dict[str, Any]:
-    """Return a copy of the tables of a case, with each first guess multiplied by its factor.
-
-    The products are rounded to `digits` significant digits.
-    """
+    """Copy the tables of a case with each first guess multiplied by its factor."""
     case = copy.deepcopy(dict(content))
     for parameter, factor in zip(parameters, factors.tolist(), strict=True):
         put(case, parameter.key, parameter.scaled(factor, digits))
@@ -63,10 +55,9 @@ def with_factors(
 
 
 def free_parameters(content: Mapping[str, Any], names: Sequence[str]) -> tuple[Parameter, ...]:
-    """Find the parameters with these `names`.
+    """Find parameters by whole keys ("roughness.rms") or by last parts ("rms") that are unique.
 
-    A name is a whole key ("roughness.rms") or its last part ("rms"), if no other key has this last
-    part. Raises `CaseError` for any other name, and for a value that is not a positive quantity.
+    Raises `CaseError` for any other name, and for a value that is not a positive quantity.
     """
     values = dict(_values(content))
     keys = [_key(name, values) for name in names]
@@ -79,10 +70,7 @@ def free_parameters(content: Mapping[str, Any], names: Sequence[str]) -> tuple[P
 
 
 def _values(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield dotted keys with their values.
-
-    The keys contain the number of a [[roughness]] table, counted from 1: "roughness.1.rms".
-    """
+    """Yield dotted keys, with the number of a [[roughness]] table: "roughness.1.rms"."""
     for name, value in table.items():
         if isinstance(value, dict):
             yield from _values(value, f"{before}{name}.")
@@ -94,16 +82,11 @@ def _values(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, A
 
 
 def _key(name: str, values: Mapping[str, Any]) -> str:
-    """Find the key of the case file that `name` means.
-
-    `name` is a whole key ("roughness.rms") or its last part ("rms"). Raises `CaseError` if there is
-    no such key, or more than one.
-    """
-    found = [key for key in values if name in (key, key.rpartition(".")[2])]
-    if len(found) > 1:
-        raise CaseError(f"--free: {name} may mean {' or '.join(found)}; name the whole key")
-    if found:
-        return found[0]
+    keys = [key for key in values if name in (key, key.rpartition(".")[2])]
+    if len(keys) > 1:
+        raise CaseError(f"--free: {name} may mean {' or '.join(keys)}; name the whole key")
+    if keys:
+        return keys[0]
     last = name.rpartition(".")[2]
     if last == "rms" and values.get("roughness.kind") == "measured":
         raise CaseError(
@@ -125,7 +108,7 @@ def _parameter(key: str, written: Any) -> Parameter:
 
 
 def _reason(key: str, written: Any) -> str | None:
-    """Return the reason why `key` cannot be a free parameter, or None if it can be free."""
+    """Why `key` cannot be free; None if it can."""
     table, _, last = key.partition(".")
     if table not in _TABLES or _CHOICES & set(last.split(".")):
         return f"cannot be free; only values of {', '.join(f'[{name}]' for name in _TABLES)} can"

@@ -4,8 +4,8 @@ import os
 
 import pytest
 
-from restitution.calibration.measured import read_measured
 from restitution.errors import CaseError
+from restitution.fit.measured import read_measured
 from tolerance import approx
 
 HEAD = "velocity_m_per_s,restitution,restitution_std\n"

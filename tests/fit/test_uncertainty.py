@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from restitution.calibration.uncertainty import Deviations, Uncertainty
+from restitution.fit.uncertainty import Deviations, Uncertainty
 from tolerance import approx
 
 J = np.array([[1.0, 0.2], [0.5, -0.3], [0.1, 0.9], [0.8, 0.8]])

@@ -10,38 +10,33 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.calibration.least_squares import (
+from restitution.case.case import Case
+from restitution.case.case_file import parse_case, parse_toml
+from restitution.display import counted
+from restitution.errors import CaseError, RestitutionError
+from restitution.fit.least_squares import (
     Data,
-    Minimum,
+    SearchEnd,
     distinct,
     jacobian,
     search_widely,
     searches,
 )
-from restitution.calibration.measured import ASSUMED, Measured
-from restitution.calibration.model import Array, CaseModel, restitution
-from restitution.calibration.parameters import Parameter, free_parameters
-from restitution.calibration.uncertainty import MODEL_SHARES, Deviations, Uncertainty
-from restitution.case.case import Case
-from restitution.case.case_file import parse_case, parse_toml
-from restitution.display import counted
-from restitution.errors import CaseError, RestitutionError
+from restitution.fit.measured import ASSUMED, Measured
+from restitution.fit.model import Array, CaseModel, restitution
+from restitution.fit.parameters import Parameter, free_parameters
+from restitution.fit.uncertainty import MODEL_SHARES, Deviations, Uncertainty
 from restitution.runs.log import Say, ignore
 from restitution.runs.refinement import settled
 from restitution.sweeps.sweep import put
 
 _FINE = 60  # number of velocities of the fitted curve
-# Smallest standard deviation of COR that is estimated from residuals. The interpolation between
-# velocities is not more accurate than this value.
-_LEAST_NOISE = 1e-4
+_LEAST_NOISE = 1e-4  # accuracy of the interpolation of COR between velocities
 
 
 @dataclass(frozen=True)
 class FittedCurve:
-    """The fitted COR at velocities (m/s) over the measured range.
-
-    `half_band` is the half-width of the 95 % confidence band of `restitution`.
-    """
+    """The fitted COR at velocities (m/s), with the half-width of its 95 % confidence band."""
 
     velocity: Array
     restitution: Array
@@ -52,10 +47,8 @@ class FittedCurve:
 class Fit:
     """The result of a fit.
 
-    `x` holds ln(value/first guess) of each parameter. `fitted` is the fitted COR at the measured
-    velocities. `deviations` contains the deviations from `fitted`, one field for each cause.
-    `weights` are the standard deviations by which residuals are divided. `minima` are the minima
-    found from several starts, the best first.
+    `x` holds ln(value/first guess) of each parameter, `fitted` is COR at the measured velocities,
+    and residuals were divided by `weights`. `minima` are the ends of all searches, best first.
     """
 
     model: CaseModel
@@ -66,32 +59,28 @@ class Fit:
     weights: Array
     deviations: Deviations
     uncertainty: Uncertainty
-    minima: Sequence[Minimum]
+    minima: Sequence[SearchEnd]
     curve: FittedCurve
 
     @property
     def parameters(self) -> Sequence[Parameter]:
-        """The free parameters."""
         return self.model.parameters
 
     @property
     def factors(self) -> list[float]:
-        """Ratio of fitted value to first guess, for each parameter."""
-        return [math.exp(each) for each in self.x.tolist()]
+        """Ratios of fitted values to first guesses."""
+        return [math.exp(x) for x in self.x.tolist()]
 
     @property
     def residuals(self) -> Array:
-        """Measured minus fitted COR."""
         return self.measured.restitution - self.fitted
 
     @property
     def chi_squared(self) -> float:
-        """Σ (residual/weight)²."""
         return float(np.sum((self.residuals / self.weights) ** 2))
 
     @property
     def freedom(self) -> int:
-        """Degrees of freedom: the number of points minus the number of parameters."""
         return self.measured.velocity.size - self.x.size
 
 
@@ -102,14 +91,17 @@ def fit(
     names: Sequence[str],
     progress: Say = ignore,
 ) -> Fit:
-    """Fit the values of the keys `names` of a case file to the `measured` COR.
+    """Fit keys of a case to measured COR.
 
-    `text` is the content of the case file. File names in it are relative to `folder`. The values of
-    `names` in the case file are the first guesses. The impact velocities of `measured` replace the
-    indentations, loads or velocities of the case. For each set of parameters, COR is computed
-    against velocity, as one curve for each surface. `progress` is then called with a short text
-    that states the number of curves so far. Raises `CaseError`, and the errors of
-    `solve_at_velocity` if the fitted case cannot be solved.
+    Args:
+        text: Content of the case file, with the first guesses.
+        folder: File names in `text` are relative to it.
+        measured: Its velocities replace the indentations, loads or velocities of the case.
+        names: Keys to be fitted, whole ("roughness.rms") or their last parts.
+        progress: Called with the number of curves computed so far, as a short text.
+
+    Raises:
+        RestitutionError: A key cannot be fitted, or the fitted case cannot be solved.
     """
     content = parse_toml(text)
     parse_case(text).require_impact()
@@ -125,13 +117,13 @@ def fit(
     given = measured.deviation
     data = Data(V, measured.restitution, np.full(V.size, ASSUMED) if given is None else given)
     minima = search_widely(model, data)
-    # The minima were found on cells twice as large as those of the case. Now search on the grid of
-    # the case. Start from the best minimum at which the case can be solved on this grid.
-    best = next(searches(model, data, [each.x for each in minima]))
+    # The minima are those on cells twice as large. On the grid of the case, start from the best at
+    # which it can be solved.
+    best = next(searches(model, data, [minimum.x for minimum in minima]))
     # Give less weight to points whose COR differs between random surfaces or between grids.
     noise = _noise(measured, model.restitution(best.x, V), best.x.size)
     data = replace(data, deviation=np.hypot(noise, _deviations(model, best.x, V).systematic))
-    ends = searches(model, data, [each.x for each in distinct([best, *minima])])
+    ends = searches(model, data, [minimum.x for minimum in distinct([best, *minima])])
     return _result(model, measured, data, sorted(ends, key=lambda end: end.squares))
 
 
@@ -150,14 +142,10 @@ def _check_points(measured: Measured, parameters: int) -> None:
 
 
 def _deviations(model: CaseModel, x: Array, velocity: Array) -> Deviations:
-    """Estimate how far COR may deviate from the curve computed with the parameters `x`.
-
-    Each cause (solver, surface, grid and model) has its own field. The solver error is in the field
-    `random`. This field does not yet contain the noise of the measurements.
-    """
+    """Deviations at the parameters `x`; `random` is only the error of the solver."""
     here = model.at(x)
     own = here.restitution(velocity)
-    each = np.array([restitution(curve, velocity) for curve in here.curves])
+    by_surface = np.array([restitution(curve, velocity) for curve in here.curves])
     try:
         grid: Array | None = model.restitution(x, velocity, "coarser") - own
     except RestitutionError:
@@ -165,7 +153,7 @@ def _deviations(model: CaseModel, x: Array, velocity: Array) -> Deviations:
     return Deviations(
         random=here.error(velocity, "restitution_error"),
         freedom=math.inf,
-        surfaces=each - own,
+        surfaces=by_surface - own,
         grid=grid,
         model=here.error(velocity, "model_error"),
         model_share=_model_share(model.case(x)),
@@ -173,17 +161,13 @@ def _deviations(model: CaseModel, x: Array, velocity: Array) -> Deviations:
 
 
 def _model_share(case: Case) -> float:
-    """The field `Deviations.model_share` of `case`; 1 if adhesion contributes to the error."""
     if case.interface.adhesive_energy > 0:
         return 1.0
     return MODEL_SHARES[case.yielding().plasticity]
 
 
 def _noise(measured: Measured, fitted: Array, parameters: int) -> Array:
-    """Standard deviations of the measured COR.
-
-    If the measurements contain no standard deviations, the residuals give an estimate.
-    """
+    """Standard deviations of the measured COR, if need be estimated from the residuals."""
     if measured.deviation is not None:
         return measured.deviation
     freedom = fitted.size - parameters
@@ -191,7 +175,7 @@ def _noise(measured: Measured, fitted: Array, parameters: int) -> Array:
     return np.full(fitted.size, max(math.sqrt(squares / freedom), _LEAST_NOISE))
 
 
-def _result(model: CaseModel, measured: Measured, data: Data, minima: Sequence[Minimum]) -> Fit:
+def _result(model: CaseModel, measured: Measured, data: Data, minima: Sequence[SearchEnd]) -> Fit:
     best = minima[0]
     V, x, freedom = data.velocity, best.x, data.velocity.size - best.x.size
     here = model.at(x)

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from restitution.calibration.parameters import free_parameters, with_factors
 from restitution.case.case_file import parse_toml
 from restitution.errors import CaseError
+from restitution.fit.parameters import free_parameters, with_factors
 from tolerance import approx
 
 CASE = """

@@ -1,50 +1,41 @@
-"""`restitution compare`: differences between two results."""
+"""`restitution report` and `restitution compare`: stored results."""
 
 from pathlib import Path
-from typing import Annotated
 
-import typer
+from rich.markup import escape
 from rich.table import Column, Table
 
+from restitution.cli.console import answers, say, say_written
+from restitution.pages.report import write_report
+from restitution.results.compare import compare as compared
+from restitution.results.writer import require_new_file, write_table
 
-def compare(
-    a: Annotated[
-        Path, typer.Argument(help="Results folder of a run or study.", metavar="A", readable=False)
-    ],
-    b: Annotated[
-        Path,
-        typer.Argument(help="Results folder of the same kind as A.", metavar="B", readable=False),
-    ],
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            "-o", "--out", metavar="FILE", help="New CSV file for the table.", readable=False
-        ),
-    ] = None,
-) -> None:
-    """Print the differences between the results in A and B, and the errors of the differences."""
-    from rich.markup import escape
 
-    from restitution.cli.console import answers, say
-    from restitution.results.compare import compare as compared
-    from restitution.results.writer import require_new_file, write_table
+def report(results: Path) -> None:
+    say_written(write_report(results))
 
-    found = compared(a, b)
+
+def compare(a: Path, b: Path, out: Path | None) -> None:
+    comparison = compared(a, b)
     require_new_file(out)
     if out is not None:
-        write_table(out, found.rows)
-    if found.inputs:
+        write_table(out, comparison.rows)
+    if comparison.inputs:
         heads = (Column(name, overflow="fold") for name in ("input", "A", "B"))
         inputs = Table(*heads, box=None, header_style="bold")
-        for differing in found.inputs:
+        for differing in comparison.inputs:
             inputs.add_row(*(escape(cell) for cell in differing))
         answers.print(inputs)
         answers.print()
-    swept = [key for key in (found.rows[0] if found.rows else {}) if "." in key or key == "title"]
+    swept = [
+        key
+        for key in (comparison.rows[0] if comparison.rows else {})
+        if "." in key or key == "title"
+    ]
     names = ("indentation (nm)", "COR A", "COR B", "difference", "error", "force B/A", "")
     numbers = (Column(name, justify="right") for name in names)
     table = Table(*map(escape, swept), *numbers, box=None, header_style="bold")
-    for row in found.rows:
+    for row in comparison.rows:
         marks = ("" if row["significant"] else "within error") if row["resolved"] else "unresolved"
         table.add_row(
             *(escape(row[key]) for key in swept),
@@ -57,10 +48,10 @@ def compare(
             marks,
         )
     answers.print(table)
-    if found.rows:
-        worst = max(found.rows, key=lambda row: abs(row["difference"]))
+    if comparison.rows:
+        worst = max(comparison.rows, key=lambda row: abs(row["difference"]))
         answers.print(f"largest difference of COR {worst['difference']:+.4f}")
     else:
         answers.print("The results have no depth in common.")
-    for note in found.notes:
+    for note in comparison.notes:
         say(f"Note: {note}")

@@ -1,1 +1,0 @@
-"""Calibration: find parameters of a case from measured coefficients of restitution."""

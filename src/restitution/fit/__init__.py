@@ -1,0 +1,1 @@
+"""Find parameters of a case from measured coefficients of restitution."""

@@ -1,0 +1,152 @@
+"""Write a fit as files: `fit.json` (all results), `fit.csv` (points) and the fitted `case.toml`."""
+
+from __future__ import annotations
+
+import math
+import os
+from pathlib import Path
+from typing import Any
+
+import tomli_w
+
+from restitution.case.case_file import parse_toml
+from restitution.fit.findings import combination, findings, identifiable
+from restitution.fit.fit import Fit
+from restitution.fit.measured import DEVIATIONS, RESTITUTION, VELOCITY
+from restitution.fit.model import velocities_to_run
+from restitution.fit.uncertainty import CONFIDENCE
+from restitution.results.interruption import hold_signals
+from restitution.results.writer import (
+    replace_file,
+    versions,
+    write_checksums,
+    write_json,
+    write_table,
+)
+
+_DIGITS = 8  # number of significant digits of fitted values in the case file
+_NAMES = ("fit.json", "fit.csv", "case.toml")
+
+
+def write_fit(fit: Fit, text: str, out: Path) -> list[Path]:
+    """Write the files of a fit into `out`; `text` is the case file with the first guesses."""
+    case = fitted_case(fit, out)
+    with hold_signals():
+        write_json(out / "fit.json", _summary(fit, text))
+        write_table(out / "fit.csv", fit_rows(fit))
+        replace_file(out / "case.toml", lambda to: to.write_text(case, encoding="utf-8"))
+        write_checksums(out, _NAMES)
+    return [out / name for name in _NAMES]
+
+
+def fitted_case(fit: Fit, out: Path) -> str:
+    """The case file for `out`, with fitted values and measured velocities."""
+
+    content = parse_toml(fit.model.text(fit.x, velocities_to_run(fit.measured.velocity), _DIGITS))
+    rough = content.get("roughness", [])
+    for part in rough if isinstance(rough, list) else [rough]:
+        part["realisations"] = fit.model.surfaces
+        if "file" in part:
+            part["file"] = Path(os.path.relpath(fit.model.folder / part["file"], out)).as_posix()
+    return tomli_w.dumps(content)
+
+
+def fit_rows(fit: Fit) -> list[dict[str, float | str]]:
+    measured, by = fit.measured, fit.deviations
+    scatter = (by.by_surface**2).sum(axis=0) ** 0.5
+    given = measured.deviation
+    return [
+        {
+            VELOCITY: float(V),
+            RESTITUTION: float(measured.restitution[k]),
+            **({} if given is None else {DEVIATIONS[0]: float(given[k])}),
+            "fitted_restitution": float(fit.fitted[k]),
+            "residual": float(fit.residuals[k]),
+            "weight_std": float(fit.weights[k]),
+            "surface_scatter": float(scatter[k]),
+            "grid_error": math.nan if by.grid is None else abs(float(by.grid[k])),
+            "model_error": float(by.model[k]),
+            "resolved": bool(fit.resolved[k]),
+        }
+        for k, V in enumerate(measured.velocity)
+    ]
+
+
+def _summary(fit: Fit, text: str) -> dict[str, Any]:
+    known = combination(fit)
+    return {
+        "parameters": [_parameter(fit, k) for k in range(fit.x.size)],
+        "correlation": fit.uncertainty.correlation.tolist(),
+        "best_known_combination": known
+        and {"exponents": known[0], "half_interval_of_logarithm": known[1]},
+        "confidence": CONFIDENCE,
+        "points": fit.measured.velocity.size,
+        "degrees_of_freedom": fit.freedom,
+        "chi_squared": fit.chi_squared,
+        "rms_residual": float((fit.residuals**2).mean() ** 0.5),
+        "weights": "noise, scatter between surfaces and error of the grid, in quadrature",
+        "surfaces": fit.model.surfaces,
+        "intervals_include": _included(fit),
+        "measured_values_are": f"means over {fit.model.surfaces} places of impact or more; "
+        "std_if_one_place assumes one place",
+        "low_and_high_include": "intervals_include, and the model of plasticity "
+        f"({fit.deviations.model_share:g} times by_model_error)",
+        "intervals_do_not_include": "values that the case gives, rate effects, elastic waves",
+        "largest_model_error": float(fit.deviations.model.max()),
+        "searches": [
+            {
+                "factors": [math.exp(x) for x in minimum.x.tolist()],
+                "sum_of_squares": minimum.squares,
+            }
+            for minimum in fit.minima
+        ],
+        "curves_computed": fit.model.evaluations,
+        "findings": findings(fit),
+        "case": text,
+        "versions": versions(),
+    }
+
+
+def _parameter(fit: Fit, k: int) -> dict[str, Any]:
+    parameter, factor = fit.parameters[k], fit.factors[k]
+    uncertainty, value = fit.uncertainty, parameter.value * factor
+    low, high = _interval(value, uncertainty.combined_halves[k])
+    data_low, data_high = _interval(value, uncertainty.halves[k])
+    return {
+        "key": parameter.key,
+        "value": value,
+        "unit": parameter.unit,
+        "written": parameter.text(factor),
+        "first_guess": parameter.written,
+        "low": low,
+        "high": high,
+        "low_from_data": data_low,
+        "high_from_data": data_high,
+        "identifiable": identifiable(fit, k),
+        "relative_std": {
+            part: _known(fit.uncertainty.deviation(part)[k]) for part in fit.uncertainty.parts
+        },
+        "by_model_error": _known(fit.uncertainty.by_model[k]),
+        "std_if_one_place": _known(fit.uncertainty.by_one_place[k]),
+    }
+
+
+def _interval(value: float, half: float) -> tuple[float | None, float | None]:
+    if not math.isfinite(half):
+        return None, None
+    return value * math.exp(-half), value * math.exp(half)
+
+
+def _known(value: float) -> float | None:
+    """`value` of a logarithm, or None if it is so large that it counts as unknown."""
+    return float(value) if value < math.log(1e6) else None
+
+
+def _included(fit: Fit) -> str:
+    scattered = "standard deviations" if fit.measured.deviation is not None else "residuals"
+    words = [f"noise (from the {scattered})", "solver"]
+    if fit.model.surfaces > 1:
+        words.append(f"mean of {fit.model.surfaces} surfaces")
+    if fit.deviations.grid is not None:
+        words.append("grid")
+    return ", ".join(words)
