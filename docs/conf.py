@@ -90,7 +90,7 @@ SHORTER = {
 def _escape_docstring(app, what, name, value, options, lines):  # the signature is Sphinx'
     """Let |z| be an absolute value and "K. L. Johnson" a name, not a substitution and a list."""
     for i, line in enumerate(lines):
-        bars = re.sub(r"(`[^`]*`)|\|", lambda found: found[1] or r"\|", line)
+        bars = re.sub(r"(`[^`]*`)|\|", lambda match: match[1] or r"\|", line)
         lines[i] = re.sub(r"^( *[A-Z])\. ", r"\1\. ", bars)
 
 

@@ -60,13 +60,13 @@ class Block:
 
 def blocks(text: str) -> list[Block]:
     """All fenced blocks of a page but those of Sphinx' directives."""
-    found = []
+    fenced = []
     for match in _FENCE.finditer(text):
         language = match["language"].removeprefix("{code-block} ")
         if language.startswith("{"):
             continue
         caption = re.search(r":caption: (.+)", match["options"])
-        found.append(
+        fenced.append(
             Block(
                 language=language,
                 body=match["body"],
@@ -76,7 +76,7 @@ def blocks(text: str) -> list[Block]:
                 line=text.count("\n", 0, match.start()) + 1,
             )
         )
-    return found
+    return fenced
 
 
 def same_text(shown: str, printed: str) -> bool:
@@ -100,10 +100,10 @@ def _match(shown: list[str], printed: list[str]) -> bool:
 def _same_line(shown: str, printed: str) -> bool:
     words = [re.escape(part) for part in _NUMBER.split(shown)]
     pattern = rf"({_NUMBER.pattern})".join(words).replace("…", ".*")
-    found = re.fullmatch(pattern, printed)
-    if not found:
+    match = re.fullmatch(pattern, printed)
+    if not match:
         return False
-    pairs = zip(_NUMBER.findall(shown), found.groups(), strict=True)
+    pairs = zip(_NUMBER.findall(shown), match.groups(), strict=True)
     return all(
         abs(float(one) - float(other)) <= max(_tolerance(one), _tolerance(other))
         for one, other in pairs

@@ -1,13 +1,9 @@
-import runpy
-from pathlib import Path
-
 import pytest
 
 from restitution.case.materials import Property, material, materials
 from restitution.errors import CaseError
 from tolerance import approx
 
-DOCS = Path(__file__).parents[2] / "docs"
 ALL = materials().values()
 each_material = pytest.mark.parametrize("found", ALL, ids=lambda found: found.key)
 
@@ -193,10 +189,3 @@ def test_a_value_outside_its_spread_is_refused():
     given = {"value": 3.0, "low": 1.0, "high": 2.0, "source": "somewhere", "verified": True}
     with pytest.raises(ValueError, match="between low and high"):
         Property[float].model_validate(given)
-
-
-def test_the_page_of_materials_is_up_to_date():
-    study = runpy.run_path(str(DOCS / "studies" / "materials.py"))
-    page = (DOCS / "materials.md").read_text(encoding="utf-8")
-    assert study["table"]() in page
-    assert study["pairs"]() in page
