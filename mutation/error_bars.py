@@ -40,8 +40,8 @@ TESTS = {
     "calibration/uncertainty.py": "calibration/test_uncertainty.py calibration/test_fit.py",
     "mixtures/scaling.py": "mixtures/test_mixture.py",
     "laws/law.py": "laws/test_interpolation.py laws/test_law.py",
-    "laws/oblique.py": "laws/test_oblique.py",
-    "laws/tangential_error.py": "laws/test_tangential_error.py laws/test_oblique.py",
+    "impacts/oblique.py": "impacts/test_oblique.py",
+    "impacts/tangential_error.py": "impacts/test_tangential_error.py impacts/test_oblique.py",
     "laws/interpolation.py": "laws/test_interpolation.py",
     "laws/compact_fit.py": "laws/test_compact_fit.py",
 }

@@ -15,7 +15,7 @@ import pytest
 from hypothesis import settings
 
 import instrument_formats
-from restitution.laws.force_law_fits import fitted_laws
+from restitution.dem.fits import fitted_laws
 from restitution.laws.law import Law, Point
 from restitution.laws.particle import Particle
 from restitution.numerics import kernels

@@ -21,6 +21,8 @@ ROOMS = (
     "case",
     "results",
     "laws",
+    "impacts",
+    "compare",
     "runs",
     "sweeps",
     "mixtures",

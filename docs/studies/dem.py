@@ -22,9 +22,10 @@ from shared import write_table
 
 from restitution.case.case_file import parse_case
 from restitution.dem.export import export, write_export
-from restitution.laws.from_results import bare_law, law_of
+from restitution.dem.fits import fit_law
+from restitution.impacts.time_integration import collide_in_time, stored_force
+from restitution.laws.from_results import bare_law
 from restitution.laws.law import Law
-from restitution.laws.time_integration import collide_in_time, stored_force
 from restitution.plots.law import law_figure
 from restitution.plots.static import write_figure
 from restitution.results.writer import ResultsFolder
@@ -148,14 +149,14 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder)
         out = run(text, place / "wall")
-        law = law_of(out)
+        law = fit_law(out)
         fits(law)
         in_time(out, law)
         coverage(text, place)
         if len(sys.argv) > 1:
             write_figure(Path(sys.argv[1]) / "dem-law", law_figure(law))
         equal = text.replace('second = "steel"', "")
-        in_codes(law_of(run(equal, place / "equal")), place)
+        in_codes(fit_law(run(equal, place / "equal")), place)
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@
 
 Wear 38 (1976) 101-114: the contact circle is divided into annuli of constant traction. In each time
 step an annulus either sticks (the surface there follows the bodies) or slides (its traction is the
-friction coefficient times Hertz's pressure). This program shares no code with `laws/foundation.py`:
+friction coefficient times Hertz's pressure). This program shares no code with the row of springs:
 its unknowns are tractions on the surface, and its influence coefficients are those of a uniformly
 loaded circle (Johnson, Contact Mechanics, eq. 3.29, with elliptic integrals). As in the paper, the
 tangential displacement is averaged around the circle.

@@ -14,8 +14,8 @@ import math
 import numpy as np
 
 from restitution import Body, Pair
-from restitution.laws.oblique import ObliqueCollision, collide_obliquely
-from restitution.laws.time_integration import StoredForce
+from restitution.impacts.oblique import ObliqueCollision, collide_obliquely
+from restitution.impacts.time_integration import StoredForce
 from restitution.theory import Hertz
 
 VELOCITY, FRICTION = 3.9, 0.092

@@ -23,7 +23,7 @@ from oblique import FRICTION, PAIR, REBOUND, SPIN, TANGENTIAL, VELOCITY, elastic
 from shared import write_table
 
 from restitution.dem.friction import STIFFNESS_SHARE
-from restitution.laws.oblique import collide_obliquely
+from restitution.impacts.oblique import collide_obliquely
 from restitution.theory import Hertz
 
 ANGLES = sorted({*TANGENTIAL, *SPIN, *REBOUND})

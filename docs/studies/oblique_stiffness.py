@@ -18,8 +18,8 @@ import oblique_codes as codes
 from shared import write_table
 
 from restitution import Body, Pair
-from restitution.laws.oblique import ObliqueCollision, collide_obliquely
-from restitution.laws.time_integration import StoredForce
+from restitution.impacts.oblique import ObliqueCollision, collide_obliquely
+from restitution.impacts.time_integration import StoredForce
 from restitution.theory import ThorntonNing
 
 E, VELOCITY, FRICTION, RADIUS, DENSITY = 100e9, 3.9, 0.3, 2.5e-3, 4000.0

@@ -10,7 +10,7 @@ the same contact. At the deepest point and half-way through unloading, with the 
 constant, the study compares the tangential stiffness without slip, the force at three
 displacements, and the energy of a loop. Over whole oblique impacts with the same normal motion, it
 compares the tangential force and the tangential restitution. The constants of
-`laws/tangential_error` come from the samples that are not `blind`.
+`impacts/tangential_error` come from the samples that are not `blind`.
 """
 
 from __future__ import annotations
@@ -32,9 +32,9 @@ from restitution.case.case_file import parse_case
 from restitution.contact.state import State
 from restitution.contact.tangential import TangentialState, shear
 from restitution.errors import DomainError
-from restitution.laws.foundation import Foundation
-from restitution.laws.tangential_error import TangentialError, tangential_error
-from restitution.laws.time_integration import StoredForce, collide_in_time, stored_force
+from restitution.impacts.foundation import Foundation
+from restitution.impacts.tangential_error import TangentialError, tangential_error
+from restitution.impacts.time_integration import StoredForce, collide_in_time, stored_force
 
 FRICTION = 0.3
 # Displacements over the displacement at which a smooth sphere slides, 3/2 of µN/stiffness.

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from restitution.contact.prescribed_velocity import solve_at_velocity
     from restitution.contact.state import State
     from restitution.errors import RestitutionError
-    from restitution.laws.oblique import ObliqueCollision
+    from restitution.impacts.oblique import ObliqueCollision
     from restitution.numerics.convolution.cache import operator_cache
     from restitution.numerics.convolution.device import on_device
     from restitution.numerics.grid import Grid
@@ -93,7 +93,7 @@ _MODULES = {
     "contact.path": ("loading_path", "unloading_path"),
     "contact.state": ("State",),
     "errors": ("RestitutionError",),
-    "laws.oblique": ("ObliqueCollision",),
+    "impacts.oblique": ("ObliqueCollision",),
     "numerics.convolution.cache": ("operator_cache",),
     "numerics.convolution.device": ("on_device",),
     "numerics.grid": ("Grid",),

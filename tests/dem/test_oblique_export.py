@@ -16,7 +16,7 @@ from restitution.dem.codes import yade as to_yade
 from restitution.dem.export import CODES, export
 from restitution.dem.friction import STIFFNESS_SHARE
 from restitution.dem.pair_table import pair_table
-from restitution.laws.oblique import collide_obliquely
+from restitution.impacts.oblique import collide_obliquely
 from restitution.laws.particle import Particle
 from tolerance import approx
 

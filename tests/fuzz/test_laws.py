@@ -16,9 +16,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from restitution.dem.export import CODES, export
+from restitution.dem.fits import fitted_laws
 from restitution.errors import DomainError, RestitutionError
 from restitution.laws.compact_fit import compact_fit
-from restitution.laws.force_law_fits import fitted_laws
 from restitution.laws.law import Law, Point
 from restitution.laws.law_files import law_rows
 from restitution.laws.particle import Particle

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from restitution.cli.parameters import FigureFormat
-    from restitution.laws.area_theory import AreaTheory
+    from restitution.compare.area_theory import AreaTheory
 
 
 def compare_area(given: AreaTheory, source: Path, out: Path | None, figures: FigureFormat) -> None:

@@ -13,7 +13,7 @@ from restitution.cli.parameters import FigureFormat, Figures
 from restitution.errors import CaseError
 
 if TYPE_CHECKING:
-    from restitution.laws.theories import Theory
+    from restitution.compare.theories import Theory
 
 
 def compare_theory(
@@ -55,9 +55,9 @@ def compare_theory(
     from restitution.case.case_file import naming, read_case
     from restitution.cli.area_theory import compare_area
     from restitution.cli.console import answers, command, say, say_next, say_written
-    from restitution.laws import theories
-    from restitution.laws.area_theory import area_of_case, area_of_results
-    from restitution.laws.law_files import read_law, write_theories
+    from restitution.compare import theories
+    from restitution.compare.area_theory import area_of_case, area_of_results
+    from restitution.laws.law_files import read_law
     from restitution.plots.static import write_figure
     from restitution.plots.theories import theory_figure
     from restitution.results.periodic import PeriodicResults
@@ -86,7 +86,7 @@ def compare_theory(
         lines = theories.theory_lines(read, velocities, found)
         figure = theory_figure(read.title, lines, theories.marks(read), points)
         written += [
-            write_theories(velocities, found, out),
+            theories.write_theories(velocities, found, out),
             write_figure(out / "theory", figure, figures.value),
         ]
 

@@ -36,13 +36,13 @@ def fit_law(
     from restitution.cli.progress import spinner
 
     with spinner("reading the results") as show:
-        from restitution.laws.force_law_fits import too_few_points
-        from restitution.laws.from_results import law_of
+        from restitution.dem.fits import fit_law as fitted
+        from restitution.dem.fits import too_few_points
         from restitution.laws.law_files import write_law
         from restitution.plots.law import law_figure
         from restitution.plots.static import write_figure
 
-        found = law_of(results, lambda name, k, n: show(f"fitting {name} ({k} of {n})"))
+        found = fitted(results, lambda name, k, n: show(f"fitting {name} ({k} of {n})"))
         written = write_law(found, out)
         show("drawing the figure")
         written.append(write_figure(out / "law", law_figure(found), figures.value))

@@ -69,9 +69,9 @@ def simulate(
     the table contains the tangential restitution, the angle of rebound and the spins.
     """
     from restitution.cli.console import answers, print_numbers, say_written, table_of_numbers
+    from restitution.impacts.time_integration import collide_in_time, course, stored_force
     from restitution.laws.from_results import bare_law
     from restitution.laws.law import velocity_of
-    from restitution.laws.time_integration import collide_in_time, course, stored_force
     from restitution.results.reader import read_run
     from restitution.results.writer import require_new_file, write_table
 
@@ -132,8 +132,8 @@ def _oblique(
     from restitution.case.quantities import read_impact_angle, read_quantity
     from restitution.cli.console import print_numbers, say, say_written, table_of_numbers
     from restitution.errors import CaseError
+    from restitution.impacts.oblique import collide_obliquely, course, oblique_force
     from restitution.laws.law import velocity_of
-    from restitution.laws.oblique import collide_obliquely, course, oblique_force
     from restitution.results.writer import write_table
 
     impact = run.case.impact

@@ -11,8 +11,6 @@ from pydantic import ValidationError
 
 from restitution.case.bodies import BodyTable
 from restitution.errors import CaseError, OutputError, first_problem, one_line
-from restitution.laws.compact_fit import compact_fit
-from restitution.laws.force_law_fits import Begin, fitted_laws
 from restitution.laws.law import Conventions, Law, Point
 from restitution.laws.law_files import LAW_FILE
 from restitution.laws.particle import Particle
@@ -21,15 +19,6 @@ from restitution.results.total_error import total
 
 _Row = Mapping[str, float]
 _SAME = 1e-9  # largest relative difference of values that count as equal
-
-
-def law_of(out: Path, begin: Begin | None = None) -> Law:
-    """Make the law of the results in the folder `out`, with its fits.
-
-    `begin` is called before each fit (`force_law_fits.Begin`). Raises the errors of `bare_law`.
-    """
-    law = bare_law(out)
-    return replace(law, fit=compact_fit(law), laws=fitted_laws(law, begin))
 
 
 def bare_law(out: Path) -> Law:

@@ -1,4 +1,4 @@
-"""Read and write the files of a restitution law, and write a table of theories.
+"""Read and write the files of a restitution law.
 
 `law.json` holds the complete law. `table.csv` (the points) and `laws.csv` (the fitted force laws)
 hold parts of it as tables.
@@ -14,8 +14,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from restitution.errors import CaseError, OutputError, first_problem
-from restitution.laws.law import STORED_LAW, Array, Law
-from restitution.laws.theories import Theory
+from restitution.laws.law import STORED_LAW, Law
 from restitution.results.checksums import check_file
 from restitution.results.interruption import hold_signals
 from restitution.results.writer import make_folder, replace_file, write_checksums, write_table
@@ -87,20 +86,6 @@ def _of_mixture(folder: Path) -> list[Path]:
             f"-o {folder} --resume`"
         )
     return sorted((folder / LAWS).iterdir())
-
-
-def write_theories(velocities: Array, found: list[Theory], out: Path) -> Path:
-    """Write `theory.csv` into `out`, which must be new or empty. Raises `OutputError`.
-
-    `found` contains the COR of each theory at `velocities` (m/s).
-    """
-    make_folder(out)
-    rows = [
-        {"velocity_m_per_s": float(V), **{each.name: float(each.restitution[k]) for each in found}}
-        for k, V in enumerate(velocities)
-    ]
-    write_table(out / "theory.csv", rows)
-    return out / "theory.csv"
 
 
 def law_rows(law: Law) -> list[dict[str, float | str]]:

@@ -15,12 +15,12 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from restitution.laws.compact_fit import FEWEST
-from restitution.laws.fitting import (
+from restitution.dem.fitting import (
     Parameters,
     fit_restitution,
     judged,
@@ -28,6 +28,8 @@ from restitution.laws.fitting import (
     seen,
     stiffness,
 )
+from restitution.laws.compact_fit import FEWEST, compact_fit
+from restitution.laws.from_results import bare_law
 from restitution.laws.law import LOSS, Array, FittedLaw, Law
 from restitution.theory import EEPA, JKR, MDR, Luding, ThorntonNing, WaltonBraun
 
@@ -53,6 +55,15 @@ _JUMP = 0.02
 _PULL_OFF = 0.1
 _ZERO = 1e-9  # adhesive parameters below this share of their scale are 0
 _AT_FORCE_ZERO = "separation, where the force is back to zero"
+
+
+def fit_law(out: Path, begin: Begin | None = None) -> Law:
+    """Make the law of the results in the folder `out`, with its compact fit and its force laws.
+
+    Raises the errors of `bare_law`.
+    """
+    law = bare_law(out)
+    return replace(law, fit=compact_fit(law), laws=fitted_laws(law, begin))
 
 
 def fitted_laws(law: Law, begin: Begin | None = None) -> tuple[FittedLaw, ...]:

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from restitution import Body, Pair
-from restitution.laws.foundation import has_yielded
-from restitution.laws.tangential_error import dundurs, tangential_error
-from restitution.laws.time_integration import StoredForce, StoredRoughness
+from restitution.impacts.foundation import has_yielded
+from restitution.impacts.tangential_error import dundurs, tangential_error
+from restitution.impacts.time_integration import StoredForce, StoredRoughness
 from tolerance import approx
 
 STUDIES = Path(__file__).parents[2] / "docs" / "studies"

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from restitution.compare import theories as room
+from restitution.dem.fits import fitted_laws
 from restitution.errors import CaseError
-from restitution.laws import theories as room
-from restitution.laws.force_law_fits import fitted_laws
 from restitution.laws.particle import Particle
 from restitution.theory import Brilliantov
 from theory_cases import ELASTIC, V, by_name, case_of

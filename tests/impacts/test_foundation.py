@@ -8,7 +8,7 @@ import pytest
 
 from elastic_force import ALUMINA, elastic
 from restitution import Pair
-from restitution.laws.foundation import Foundation, has_yielded
+from restitution.impacts.foundation import Foundation, has_yielded
 from restitution.theory import Hertz
 from tolerance import approx
 

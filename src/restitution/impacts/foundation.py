@@ -30,7 +30,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.laws.time_integration import StoredForce
+from restitution.impacts.time_integration import StoredForce
 
 Array = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from restitution.laws.references import (
+from restitution.compare.references import (
     force_references,
     least_indentation,
     restitution_references_by_indentation,

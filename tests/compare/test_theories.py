@@ -8,9 +8,8 @@ import pytest
 
 from restitution import theory
 from restitution.case.derived import derived_quantities
+from restitution.compare import theories as room
 from restitution.errors import CaseError, OutputError
-from restitution.laws import theories as room
-from restitution.laws.law_files import write_theories
 from restitution.theory import (
     JKR,
     MDR,
@@ -256,7 +255,7 @@ def test_the_table(points, tmp_path):
     case = case_of()
     V = room.velocities_of(case, points)
     found = room.theories(case, V, points)
-    path = write_theories(V, found, tmp_path / "out")
+    path = room.write_theories(V, found, tmp_path / "out")
     assert path == tmp_path / "out" / "theory.csv"
     with open(path, newline="") as file:
         rows = list(csv.DictReader(file))
@@ -266,7 +265,7 @@ def test_the_table(points, tmp_path):
         np.testing.assert_array_equal(column, each.restitution)
     assert rows[0]["johnson"] == ""
     with pytest.raises(OutputError, match="not empty"):
-        write_theories(V, found, tmp_path / "out")
+        room.write_theories(V, found, tmp_path / "out")
 
 
 def test_the_softer_body_gives_its_name_whichever_it_is():

@@ -5,13 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
 from restitution.case.case import Case
+from restitution.compare.closed_forms import FORMS, SOURCES, Bodies, speed, within
 from restitution.errors import CaseError
-from restitution.laws.closed_forms import FORMS, SOURCES, Bodies, speed, within
 from restitution.laws.law import LOSS, Array, FittedLaw, Law
+from restitution.results.writer import make_folder, write_table
 from restitution.theory import Brilliantov
 
 STEPS = 25
@@ -88,6 +90,20 @@ def theory_lines(
         for each in found
         if each.name != COMPUTED
     ]
+
+
+def write_theories(velocities: Array, found: list[Theory], out: Path) -> Path:
+    """Write `theory.csv` into `out`, which must be new or empty. Raises `OutputError`.
+
+    `found` contains the COR of each theory at `velocities` (m/s).
+    """
+    make_folder(out)
+    rows = [
+        {"velocity_m_per_s": float(V), **{each.name: float(each.restitution[k]) for each in found}}
+        for k, V in enumerate(velocities)
+    ]
+    write_table(out / "theory.csv", rows)
+    return out / "theory.csv"
 
 
 def left_out(case: Case, law: Law | None = None) -> dict[str, str]:

@@ -12,9 +12,9 @@ from elastic_force import ALUMINA, elastic
 from restitution import Pair
 from restitution.cli import console
 from restitution.errors import CaseError, DomainError
-from restitution.laws.foundation import Foundation
-from restitution.laws.oblique import collide_obliquely, course
-from restitution.laws.time_integration import stored_force
+from restitution.impacts.foundation import Foundation
+from restitution.impacts.oblique import collide_obliquely, course
+from restitution.impacts.time_integration import stored_force
 from restitution.theory import Hertz
 from tolerance import approx
 
@@ -160,7 +160,7 @@ def test_the_law_of_a_yielded_rough_contact_agrees_with_boundary_elements(
 ):
     from restitution import solve
     from restitution.contact.tangential import shear
-    from restitution.laws.tangential_error import tangential_error
+    from restitution.impacts.tangential_error import tangential_error
     from restitution.results.reader import RunResults
 
     state = solve(RunResults(computed_yielding).case.contact(computed_yielding), yielded.deepest)
@@ -307,8 +307,8 @@ def test_an_impact_whose_contact_point_moves_backwards_has_the_same_errors(wall)
 
 
 def test_after_yield_the_error_has_a_part_that_vanishes_in_full_slip(yielded, monkeypatch):
-    from restitution.laws import oblique
-    from restitution.laws.tangential_error import TangentialError
+    from restitution.impacts import oblique
+    from restitution.impacts.tangential_error import TangentialError
 
     def errors(degrees, friction, **parts):
         stated = TangentialError(**{"stiffness": 0.0, "impulse": 0.0, "sliding": 0.0} | parts)
@@ -333,8 +333,8 @@ def test_after_yield_the_error_has_a_part_that_vanishes_in_full_slip(yielded, mo
 def test_the_error_of_the_impulse_is_the_largest_change_by_the_error_of_the_stiffness(
     wall, monkeypatch
 ):
-    from restitution.laws import oblique
-    from restitution.laws.tangential_error import TangentialError
+    from restitution.impacts import oblique
+    from restitution.impacts.tangential_error import TangentialError
 
     angle, make = math.radians(12), Foundation.of.__func__
 

@@ -35,8 +35,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from restitution.contact.bodies import Pair
-from restitution.laws.foundation import has_yielded
-from restitution.laws.time_integration import StoredForce
+from restitution.impacts.foundation import has_yielded
+from restitution.impacts.time_integration import StoredForce
 
 # With these constants, the error estimate is at least as large as every difference that was found
 # in the comparison with boundary elements. The top of this file defines χ and β.

@@ -34,9 +34,9 @@ import numpy as np
 from restitution.contact.bodies import Pair
 from restitution.display import quantity, summary_html, summary_text
 from restitution.errors import CaseError
-from restitution.laws.foundation import Foundation
-from restitution.laws.tangential_error import tangential_error
-from restitution.laws.time_integration import (
+from restitution.impacts.foundation import Foundation
+from restitution.impacts.tangential_error import tangential_error
+from restitution.impacts.time_integration import (
     ReferenceCollision,
     StoredForce,
     collide_in_time,

@@ -12,9 +12,9 @@ from restitution.case.case_file import parse_case
 from restitution.cli import console
 from restitution.contact.bodies import Body, Pair
 from restitution.errors import CaseError, DomainError, NotConvergedError, OutputError
-from restitution.laws import time_integration
+from restitution.impacts import time_integration
+from restitution.impacts.time_integration import StoredForce, collide_in_time, course, stored_force
 from restitution.laws.from_results import bare_law
-from restitution.laws.time_integration import StoredForce, collide_in_time, course, stored_force
 from restitution.results.writer import ResultsFolder
 from restitution.runs.ensemble import run_realisations
 from restitution.theory import ThorntonNing

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from restitution.laws import force_law_fits
-from restitution.laws.force_law_fits import NAMES, fitted_laws, too_few_points
+from restitution.dem import fits
+from restitution.dem.fits import NAMES, fitted_laws, too_few_points
 from restitution.laws.particle import Particle
 from restitution.theory import EEPA, JKR, MDR, Luding, ThorntonNing, WaltonBraun
 from tolerance import approx
@@ -50,7 +50,7 @@ def mass(law):
 
 def fit_of(law, name):
     """One fit of `fitted_laws`, without the others."""
-    found = getattr(force_law_fits, f"_{name.removeprefix('lammps-').replace('-', '_')}")(law)
+    found = getattr(fits, f"_{name.removeprefix('lammps-').replace('-', '_')}")(law)
     assert found.name == name
     return found
 
@@ -138,7 +138,7 @@ def test_thornton_and_ning(made, law, mass, V_s):
     e = np.sqrt(smooth.restitution(V, mass) ** 2 - ((V_s or 0.0) / V) ** 2)
     w = 0.0 if V_s is None else 0.2
     found = made(e, force, yield_pressure=1e9, work_of_adhesion=w, sticks_below=V_s)
-    for each in force_law_fits._thornton_ning(found):
+    for each in fits._thornton_ning(found):
         assert each.worst < 1e-6
         assert each.parameters["yield_pressure_Pa"] == approx(4e8, rel=1e-4)
         if V_s is None:
@@ -156,7 +156,7 @@ def test_the_best_of_the_fits_with_a_sticking_velocity_need_not_be_the_one_known
     e = np.sqrt(smooth.restitution(V, mass) ** 2 - (0.012 / V) ** 2)
     force = smooth.loading_force(smooth.indentation_from_velocity(V, mass))
     found = made(e, force, work_of_adhesion=0.2, smooth_sticking_velocity=0.004)
-    by_force, by_restitution = (each.parameters for each in force_law_fits._thornton_ning(found))
+    by_force, by_restitution = (each.parameters for each in fits._thornton_ning(found))
     assert by_force["sticking_velocity_m_per_s"] == 0.004
     assert by_restitution["sticking_velocity_m_per_s"] == approx(0.012, rel=1e-3)
 
@@ -169,9 +169,7 @@ def test_thornton_and_ning_from_a_yield_pressure_that_is_far_off(made, law, mass
     force = smooth.loading_force(smooth.indentation_from_velocity(V, mass))
     e = np.sqrt(smooth.restitution(V, mass) ** 2 - (V_s / V) ** 2)
     adhesive = {"work_of_adhesion": 0.2, "sticks_below": V_s} if V_s else {}
-    for each in force_law_fits._thornton_ning(
-        made(e, force, yield_pressure=4e8 * factor, **adhesive)
-    ):
+    for each in fits._thornton_ning(made(e, force, yield_pressure=4e8 * factor, **adhesive)):
         assert each.parameters["yield_pressure_Pa"] == approx(4e8, rel=1e-4)
 
 

@@ -10,8 +10,8 @@ import pytest
 from elastic_force import elastic
 from restitution import Body, Pair
 from restitution.errors import CaseError
-from restitution.laws.full_slip import full_slip_angle, full_slip_restitution
-from restitution.laws.oblique import collide_obliquely
+from restitution.impacts.full_slip import full_slip_angle, full_slip_restitution
+from restitution.impacts.oblique import collide_obliquely
 from tolerance import approx
 
 STUDIES = Path(__file__).parents[2] / "docs" / "studies"
