@@ -1,7 +1,7 @@
 """CPU time of cohesive contacts beside one busy process per core, against one BLAS thread.
 
 Libraries of linear algebra start a thread per core, and idle threads that wait in a loop cost CPU
-time if the cores are busy. Writes docs/benchmarks/busy.md, and fails above 1.2 times.
+time if the cores are busy. Writes benchmarks/busy.md, and fails above 1.2 times.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Time complete curves of restitution; writes docs/benchmarks/curves.md.
+"""Time complete curves of restitution; writes benchmarks/curves.md.
 
 Times are also given in the unit U of `unit.py`, so that machines can be compared. `--repeats 1` is
 quicker.

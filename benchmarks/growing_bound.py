@@ -1,6 +1,6 @@
 """Time of a curve with a growing pressure bound, relative to the time with a constant bound.
 
-Writes docs/benchmarks/growing-bound.md. `--repeats 1` is quicker.
+Writes benchmarks/growing-bound.md. `--repeats 1` is quicker.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Time from a slider to the redrawn curve, and the memory after many changes, in Chromium.
 
-Writes docs/benchmarks/page.md. It needs Chromium and the extras `app` and `test`.
+Writes benchmarks/page.md. It needs Chromium and the extras `app` and `test`.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Time to import the package and to print its help, relative to numpy and scipy.fft.
 
-Writes docs/benchmarks/start.md. The processes take turns; times are those of whole processes.
+Writes benchmarks/start.md. The processes take turns; times are those of whole processes.
 """
 
 from __future__ import annotations

@@ -52,7 +52,7 @@ NOT_RUN = {
         "restitution fit MEASURED.csv --case case.toml --free yield_strength,rms -o FIT",
     ): ("takes minutes"),
     ("docs/fit.md", "velocity_m_per_s,restitution,restitution_std"): "is a table",
-    ("docs/validation.md", "python validation/compare.py"): "takes minutes",
+    ("docs/validation.md", "python evidence/plasticity_models/compare.py"): "takes minutes",
 }
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
 PAGES = [path for path in PAGES if not {"_build", "auto_gallery"} & set(path.parts)]

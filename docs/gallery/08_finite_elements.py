@@ -4,7 +4,7 @@ Validation against finite elements
 
 This figure compares COR of three models of plasticity with COR of two reference computations:
 axisymmetric finite elements (smooth spheres and spheres with waves), and a rough contact in 3D. The
-data are from ``validation/models.csv``. If a yield strength is given, the program uses the model
+data are from ``evidence/plasticity_models/models.csv``. If a yield strength is given, the program uses the model
 ``expanding-cavity``.
 """
 
@@ -16,7 +16,7 @@ import matplotlib.pyplot as plt
 
 
 def table():
-    """The rows of validation/models.csv, found in the current folder or a folder above it."""
+    """The rows of evidence/plasticity_models/models.csv, found in the current folder or a folder above it."""
     here = Path.cwd().resolve()
     root = next(folder for folder in (here, *here.parents) if (folder / "validation").is_dir())
     with open(root / "validation" / "models.csv") as file:

@@ -1,4 +1,4 @@
-"""Oblique impact against annuli of traction (docs/studies/maw.py), closed forms and reversal."""
+"""Oblique impact against annuli of traction (evidence/maw/maw.py), closed forms and reversal."""
 
 import csv
 import math

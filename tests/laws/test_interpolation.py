@@ -60,7 +60,7 @@ def test_the_error_holds_for_curves_that_scatter_as_rough_ones_do(seed):
 
 
 def test_the_error_of_the_example_holds_between_its_velocities_and_close_to_them(law):
-    """Results of `docs/studies/dem.py` for four rough surfaces at 17 velocities."""
+    """Results of `evidence/dem/dem.py` for four rough surfaces at 17 velocities."""
     with open(BETWEEN, newline="") as file:
         rows = [{key: float(text) for key, text in row.items()} for row in csv.DictReader(file)]
     held = {}

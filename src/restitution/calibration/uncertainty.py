@@ -18,7 +18,7 @@ to the grid.
 
 The model error of COR is not random. If COR deviated by its full model error M at every velocity,
 the logarithms would change by P M. Fits to the finite-element curves of the validation change by
-less: 95 % of them by at most the share `MODEL_SHARES` of P M (docs/studies/fit_model_error.py). The
+less: 95 % of them by at most the share `MODEL_SHARES` of P M (evidence/fit/fit_model_error.py). The
 combined interval of a parameter adds this part to the interval of the data in quadrature.
 
 Intervals are computed with Student's t distribution, with the degrees of freedom according to Welch
