@@ -39,7 +39,7 @@ from restitution.case.case_file import read_case
 
 ROOT = Path(__file__).parents[1]
 EXAMPLE = ROOT / "benchmarks" / "steel.toml"
-OUT = ROOT / "docs" / "benchmarks" / "curves.md"
+OUT = Path(__file__).with_suffix(".md")
 FIG_10 = files("restitution.reproduce") / "studies" / "roughness.toml"
 NODES = 512
 STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25)

@@ -31,7 +31,7 @@ from restitution import (  # noqa: E402
 )
 
 Curve = Callable[[Surface, dict[str, float]], None]
-OUT = Path(__file__).parents[1] / "docs" / "benchmarks" / "growing-bound.md"
+OUT = Path(__file__).with_name("growing-bound.md")
 NODES = 512
 GRID = Grid((NODES, NODES), (0.25e-6, 0.25e-6))
 STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25)

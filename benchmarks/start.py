@@ -12,7 +12,7 @@ from pathlib import Path
 
 from unit import machine, seconds, today
 
-OUT = Path(__file__).parents[1] / "docs" / "benchmarks" / "start.md"
+OUT = Path(__file__).with_suffix(".md")
 TURNS = 15
 BASE = "numpy and scipy.fft"
 COMMANDS = {

@@ -36,7 +36,6 @@ NOT_RUN = {
         "changes this page"
     ),
     ("docs/tutorials/scan-to-lammps.md", "cd restitution"): "installs the packages",
-    ("docs/mutation.md", "make mutation"): "takes ten minutes and more",
     ("docs/dem.md", "python match_velocity.py --wall 2 z 0.0 -- lmp -in my.in"): (
         "needs a simulation of its own"
     ),
@@ -249,8 +248,8 @@ def test_the_way_to_a_dem_code_gives_the_table_of_its_page(tmp_path):
 
 
 # The CHANGELOG tells of names that are gone.
-DOCUMENTS = PAGES
-FOLDERS = "src|tests|docs|examples|validation|benchmarks"
+DOCUMENTS = [*PAGES, *ROOT.glob("benchmarks/*.md"), *ROOT.glob("evidence/*/*.md")]
+FOLDERS = "src|tests|docs|examples|evidence|benchmarks"
 
 
 def code(document):

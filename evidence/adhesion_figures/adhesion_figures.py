@@ -1,14 +1,14 @@
 """Figures 8, 9 and 14 of Ghanbarzadeh et al. (2019), on a grid that resolves the adhesion.
 
-Writes docs/images/adhesion-smooth.png, docs/images/adhesion-rough.png and the numbers behind them,
-evidence/adhesion_figures/adhesion_figures.csv. Takes some minutes: `python -m evidence.adhesion_figures.adhesion_figures`.
+Writes docs/images/adhesion-smooth.png, docs/images/adhesion-rough.png and the table beside it. Some
+minutes.
 """
 
 from __future__ import annotations
 
 import numpy as np
-from evidence.shared import PAIR, write_image, write_table
 
+from evidence.shared import PAIR, write_image, write_table
 from restitution import Contact, Grid, collide, generate_surface, loading_path, smooth
 from restitution.contact.checks.resolution import ADHESIVE_NODES, adhesive_nodes
 from restitution.plots.cor import cor_axis
@@ -99,7 +99,7 @@ def draw(rows, name, title):
 def main():
     """Compute, store and draw."""
     rows = [*smooth_rows(), *rough_rows()]
-    write_table("adhesion_figures.csv", rows)
+    write_table("adhesion_figures/adhesion_figures.csv", rows)
     draw([r for r in rows if r["surface"] == "smooth"], "adhesion-smooth", "Smooth spheres")
     draw(
         [r for r in rows if r["surface"] == "rough"],

@@ -1,8 +1,7 @@
 """Attraction of finite range: the numbers and figures in docs/adhesion.md.
 
-`python -m evidence.cohesive.cohesive NAME ...` with the names `grids`, `sticking`, `joined`, `rough` and
-`balance` computes and writes a table `cohesive_NAME.csv`; all five take about twenty minutes.
-`figure` draws the results of `sticking`.
+The names `grids`, `sticking`, `joined`, `rough` and `balance` compute and write a table
+`cohesive_NAME.csv`; all five take about twenty minutes. `figure` draws the results of `sticking`.
 """
 
 from __future__ import annotations
@@ -11,10 +10,11 @@ import csv
 import math
 import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
-from evidence.shared import HERE, write_image, write_table
 
+from evidence.shared import write_image, write_table
 from restitution import Body, Contact, Grid, Pair, Surface, collide, generate_surface, smooth, solve
 from restitution.contact.cohesive import COMPANION
 from restitution.contact.model_error import hysteresis_ratio, model_error
@@ -27,7 +27,7 @@ from restitution.plots.figure import DASHED, GREY, ORANGE, Axis, Chart, Figure, 
 from restitution.theory import JKR, LennardJones, MaugisDugdale
 
 W, Z0, E_STAR = 0.05, 0.3e-9, 1e11
-REFERENCE = HERE / "cohesive_reference.csv"
+REFERENCE = Path(__file__).with_name("cohesive_reference.csv")
 
 
 def pair_of(tabor):
@@ -96,7 +96,7 @@ def grids():
                 }
             )
             print(rows[-1], flush=True)
-    write_table("cohesive_grids.csv", rows)
+    write_table("cohesive/cohesive_grids.csv", rows)
 
 
 def _ends(name, values):
@@ -142,12 +142,12 @@ def sticking():
             "pull_off_maugis_over_jkr": "",
         }
     )
-    write_table("cohesive_sticking.csv", rows)
+    write_table("cohesive/cohesive_sticking.csv", rows)
 
 
 def figure():
     """Draw the sticking velocity against the Tabor parameter."""
-    with open(HERE / "cohesive_sticking.csv") as file:
+    with open(Path(__file__).with_name("cohesive_sticking.csv")) as file:
         rows = list(csv.DictReader(file))
     tabor = [float(row["tabor_parameter"]) for row in rows[:-1]]
     found = [float(row["sticking_velocity_over_jkr"]) for row in rows[:-1]]
@@ -215,7 +215,7 @@ def joined():
                 }
             )
             print(rows[-1], flush=True)
-    write_table("cohesive_joined.csv", rows)
+    write_table("cohesive/cohesive_joined.csv", rows)
 
 
 MATERIALS = {
@@ -258,7 +258,7 @@ def rough():
                         row["jkr_model_error"] = round(error, 4)
                 rows.append(row)
                 print(row, flush=True)
-    write_table("cohesive_rough.csv", rows)
+    write_table("cohesive/cohesive_rough.csv", rows)
 
 
 def balance():
@@ -302,8 +302,8 @@ def balance():
         )
         if number % 20 == 19:
             print(number + 1, flush=True)
-            write_table("cohesive_balance.csv", rows)
-    write_table("cohesive_balance.csv", rows)
+            write_table("cohesive/cohesive_balance.csv", rows)
+    write_table("cohesive/cohesive_balance.csv", rows)
     off = [abs(float(r["by_force_J"]) - float(r["unloading_work_J"])) for r in rows]
     within = [o <= float(r["error_J"]) for o, r in zip(off, rows, strict=True)]
     above = [

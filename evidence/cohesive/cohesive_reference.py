@@ -1,7 +1,6 @@
 """Axisymmetric reference for `cohesive`: a smooth elastic sphere with a Lennard-Jones law.
 
-`python evidence/cohesive/cohesive_reference.py`; about ten minutes, most of them for the largest Tabor
-parameter. It writes `cohesive_reference.csv`, with two meshes for each Tabor parameter.
+Writes `cohesive_reference.csv`, with two meshes for each Tabor parameter. About ten minutes.
 
 This code shares no code with `restitution`. It has rings of constant pressure instead of square
 cells and dense matrices instead of FFTs. It follows the whole equilibrium curve, stable or not, by

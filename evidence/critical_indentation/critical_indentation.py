@@ -1,15 +1,14 @@
 """Depth from which a rough sphere rebounds like a smooth one: i_cr,max against roughness.
 
-Writes evidence/critical_indentation/critical_indentation.csv and docs/images/critical-indentation.png. Some minutes:
-`python -m evidence.critical_indentation.critical_indentation`.
+Writes the table beside it and docs/images/critical-indentation.png. Some minutes.
 """
 
 from __future__ import annotations
 
 import numpy as np
 from scipy.stats import linregress, t
-from evidence.shared import PAIR, STEEL, write_image, write_table
 
+from evidence.shared import PAIR, STEEL, write_image, write_table
 from restitution import Contact, Grid, collide, generate_surface, smooth, solve
 from restitution.plots.figure import (
     DASHED,
@@ -89,7 +88,7 @@ def main():
                         "critical_m": critical(off),
                     }
                 )
-    write_table("critical_indentation.csv", table)
+    write_table("critical_indentation/critical_indentation.csv", table)
     draw(table)
 
 

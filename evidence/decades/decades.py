@@ -1,7 +1,5 @@
 """A law over four decades of velocity from grids chosen by depth, against direct runs in between.
 
-    python -m evidence.decades.decades
-
 Writes decades.csv: the law has 17 velocities from 0.001 to 10 m/s, and twelve others are drawn at
 random for each of four contacts. `strict_error` does not include the errors of grid, surface and
 materials, because law and direct run share them. Takes about three minutes.
@@ -14,8 +12,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from evidence.shared import write_table
 
+from evidence.shared import write_table
 from restitution.case.case_file import parse_case
 from restitution.laws.from_results import bare_law
 from restitution.laws.law import Law
@@ -85,7 +83,7 @@ def main() -> None:
     """Write the table, and print how often the errors hold."""
     with tempfile.TemporaryDirectory() as folder:
         rows = [row for k in range(len(CONTACTS)) for row in checks(k, Path(folder))]
-    write_table("decades.csv", rows)
+    write_table("decades/decades.csv", rows)
     for name in ("error", "strict_error"):
         held = [
             abs(float(row["restitution_law"]) - float(row["restitution_direct"]))

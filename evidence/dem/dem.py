@@ -18,8 +18,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from evidence.shared import write_table
 
+from evidence.shared import write_table
 from restitution.case.case_file import parse_case
 from restitution.dem.export import export, write_export
 from restitution.dem.fits import fit_law
@@ -108,7 +108,7 @@ def coverage(text: str, place: Path) -> None:
                 found = known.at(point.velocity)
                 held = abs(found.restitution - point.restitution) <= found.error
                 inside[rows[-1]["share"]].append(held)
-    write_table("between_velocities.csv", rows)
+    write_table("dem/between_velocities.csv", rows)
     for share, held in inside.items():
         print(f"at {share:g} of the way between velocities: {sum(held)} of {len(held)} held")
     print()

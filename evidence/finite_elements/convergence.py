@@ -1,7 +1,7 @@
 """Extrapolate the steep waves to vanishing element size.
 
 Reads the convergence cases in data/checks (`cases.py --checks`), and writes data/convergence.csv
-and the table in README.md. The file has a row for each mesh, and after the meshes of a depth a row
+and the table in method.md. The file has a row for each mesh, and after the meshes of a depth a row
 `extrapolated` with its uncertainty.
 """
 
@@ -16,10 +16,10 @@ from case_list import convergence_cases, crest_cases
 
 HERE = Path(__file__).parent
 TABLE = HERE / "data" / "convergence.csv"
-README = HERE / "README.md"
+METHOD = HERE / "method.md"
 CHECKS = HERE / "data" / "checks"
 QUANTITIES = ("restitution", "force_N")
-_LEAST = 0.002  # relative error of smooth spheres (README.md)
+_LEAST = 0.002  # relative error of smooth spheres (method.md)
 VALUES = [name + suffix for name in QUANTITIES for suffix in ("", "_uncertainty")]
 FIELDS = ("case", "omega", "mesh", "element_size_m", "elements", *VALUES)
 
@@ -110,9 +110,9 @@ def main() -> None:
         out.writeheader()
         out.writerows(rows)
     start, end = "<!-- convergence -->\n", "<!-- end of convergence -->"
-    before, _, rest = README.read_text(encoding="utf-8").partition(start)
+    before, _, rest = METHOD.read_text(encoding="utf-8").partition(start)
     _, _, after = rest.partition(end)
-    README.write_text(f"{before}{start}\n{markdown(rows)}\n\n{end}{after}", encoding="utf-8")
+    METHOD.write_text(f"{before}{start}\n{markdown(rows)}\n\n{end}{after}", encoding="utf-8")
 
 
 if __name__ == "__main__":

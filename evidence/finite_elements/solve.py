@@ -1,7 +1,7 @@
 """Axisymmetric finite elements for elastic-plastic contact with a rigid profile.
 
 A deformable half-space (J2 plasticity, small strains) is pressed by a rigid frictionless body with
-the gap profile g(r) = r²/(2R) + A (1 − cos(2πr/λ)). README.md gives equations and sources.
+the gap profile g(r) = r²/(2R) + A (1 − cos(2πr/λ)). method.md gives equations and sources.
 
 Example:
     python solve.py --yield-strength 1e9 --youngs-modulus 210e9 --poissons-ratio 0.3 --omega 2 4 8

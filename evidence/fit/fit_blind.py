@@ -5,9 +5,7 @@ means over 16 other surfaces of the same kind (other seeds), on cells half as la
 fit, with 2 % of normal noise at each velocity. The fit starts from a yield strength or
 pressure and an rms roughness that are wrong by a factor of up to 3 either way.
 
-    python evidence/fit/fit_blind.py
-
-writes fit_blind.csv beside this file: a row for each parameter. `--summary` reads it again. The
+Writes fit_blind.csv beside this file: a row for each parameter. `--summary` reads it again. The
 method was developed on the seeds from 1000 on and 1 to 20; the seeds of the table had not been used
 before.
 """

@@ -2,7 +2,7 @@
 
 `restitution fit` prints how a parameter changes if COR deviates by its full model error at every
 velocity (P M in `calibration.uncertainty`). Here the real deviations of COR from the finite-element
-curves (`evidence/plasticity_models/models.csv`) take the place of M, for each run of four or more neighbouring
+curves (`plasticity_models`) take the place of M, for each run of four or more neighbouring
 depths of a curve. Of smooth bodies, COR at the loading work W depends on W/Y⁵ only; so
 ∂COR/∂ln Y = −5 ∂COR/∂ln W is used for all curves. The program prints, for each model, which share
 of P M the real change is at most in 50 % and in 95 % of the runs.
@@ -18,7 +18,7 @@ import numpy as np
 
 from restitution.contact.model_error import relative_model_error
 
-MODELS = Path(__file__).parents[2] / "validation" / "models.csv"
+MODELS = Path(__file__).parents[1] / "plasticity_models" / "models.csv"
 FEWEST = 4  # smallest number of depths of a fit
 
 

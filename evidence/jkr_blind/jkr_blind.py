@@ -1,7 +1,5 @@
 """Error bars of adhesive COR in blind cases: random smooth elastic spheres against exact JKR.
 
-    python -m evidence.jkr_blind.jkr_blind
-
 Radius, Young's modulus, work of adhesion, indentation and spacing are random; no constant was
 chosen on these cases. Writes `jkr_blind.csv` and prints how many errors of COR are within
 `restitution_error`. Takes half a minute.
@@ -12,8 +10,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from evidence.shared import write_table
 
+from evidence.shared import write_table
 from restitution import Body, Contact, Grid, Pair, collide, smooth, solve
 from restitution.theory import JKR
 
@@ -54,7 +52,7 @@ def main() -> None:
                 "pull_off_over_jkr": f"{collision.pull_off_force / jkr.pull_off_force:.4f}",
             }
         )
-    write_table("jkr_blind.csv", rows)
+    write_table("jkr_blind/jkr_blind.csv", rows)
     off = [abs(float(row["restitution"]) - float(row["restitution_jkr"])) for row in rows]
     errors = [float(row["restitution_error"]) for row in rows]
     held = [one <= error for one, error in zip(off, errors, strict=True)]

@@ -1,7 +1,5 @@
 """Oblique impact of an elastic sphere by annuli of traction, as in Maw, Barber and Fawcett (1976).
 
-    python -m evidence.maw.maw
-
 Wear 38 (1976) 101-114: the contact circle is divided into annuli of constant traction. In each time
 step an annulus either sticks (the surface there follows the bodies) or slides (its traction is the
 friction coefficient times Hertz's pressure). This program shares no code with the row of springs:
@@ -23,6 +21,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.special import ellipe, ellipk
+
 from evidence.shared import write_table
 
 NU = 0.3
@@ -128,7 +127,7 @@ def main() -> None:
             }
         )
         print(rows[-1])
-    write_table("maw.csv", rows)
+    write_table("maw/maw.csv", rows)
 
 
 if __name__ == "__main__":

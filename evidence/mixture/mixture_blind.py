@@ -1,7 +1,5 @@
 """Laws interpolated in the reduced radius against laws computed there.
 
-    python -m evidence.mixture.mixture_blind
-
 In four families of pairs, laws at three reduced radii are interpolated to all other reduced radii
 and compared with laws that were computed there. Writes mixture_blind.csv. The errors of grid,
 surface and materials are left out, because both laws share them. Takes about ten minutes.
@@ -14,7 +12,6 @@ import tempfile
 from pathlib import Path
 
 from evidence.shared import write_table
-
 from restitution.case.case_file import parse_case
 from restitution.laws.from_results import bare_law
 from restitution.laws.law import Law
@@ -87,7 +84,7 @@ def main() -> None:
     """Write the table, and print how often the error holds."""
     with tempfile.TemporaryDirectory() as folder:
         rows = [row for values in MIXTURES for row in checks(values, Path(folder))]
-    write_table("mixture_blind.csv", rows)
+    write_table("mixture/mixture_blind.csv", rows)
     off = [
         abs(float(row["restitution_interpolated"]) - float(row["restitution_computed"]))
         for row in rows

@@ -17,7 +17,7 @@ import tempfile
 import tomllib
 from pathlib import Path
 
-HERE = Path(__file__).resolve().parents[1]
+HERE = Path(__file__).resolve().parents[2]
 TESTS = {
     "contact/adhesive_work.py": "contact/test_work_error.py contact/test_balance.py "
     "contact/test_loading.py",

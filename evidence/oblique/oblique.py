@@ -1,7 +1,5 @@
 """Rebound of alumina spheres from glass, computed and measured by Kharaz, Gorham and Salman (2001).
 
-    python evidence/oblique/oblique.py
-
 Prints the tables of docs/oblique.md. The spheres have a diameter of 5 mm and hit the glass at
 3.9 m/s; nothing is fitted. The measured values are those of Powder Technol. 120, 281–291, digitised
 by the examples of the code Lethe.

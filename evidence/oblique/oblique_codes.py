@@ -1,7 +1,5 @@
 """The impacts of Kharaz, Gorham and Salman (2001) in LAMMPS, LIGGGHTS and YADE, beside the law.
 
-    python -m evidence.oblique.oblique_codes
-
 Alumina spheres of 5 mm on a glass wall at 3.9 m/s (`oblique.py`), with a normal restitution of 1
 and the E* and G* of the pair. All angles are run in one simulation of each contact model: spheres
 that do not touch each other hit one wall. Writes oblique_codes.csv for the codes that are
@@ -19,9 +17,8 @@ import sys
 import tempfile
 from pathlib import Path
 
-from oblique import FRICTION, PAIR, REBOUND, SPIN, TANGENTIAL, VELOCITY, elastic
+from evidence.oblique.oblique import FRICTION, PAIR, REBOUND, SPIN, TANGENTIAL, VELOCITY, elastic
 from evidence.shared import write_table
-
 from restitution.dem.friction import STIFFNESS_SHARE
 from restitution.impacts.oblique import collide_obliquely
 from restitution.theory import Hertz
@@ -239,7 +236,7 @@ def main() -> None:
                     "rebound_angle_deg": f"{math.degrees(math.atan2(v_t, v_n)):.4f}",
                 }
             )
-    write_table("oblique_codes.csv", rows)
+    write_table("oblique/oblique_codes.csv", rows)
     print("| angle (deg) | measured | " + " | ".join(every) + " |")
     for angle, measured in TANGENTIAL.items():
         V_t = VELOCITY * math.sin(math.radians(angle))

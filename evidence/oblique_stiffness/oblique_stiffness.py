@@ -1,7 +1,5 @@
 """Factor on Mindlin's tangential stiffness with which LAMMPS reproduces the rebound of the law.
 
-    python -m evidence.oblique_stiffness.oblique_stiffness
-
 `tangential mindlin_rescale/force` for a sphere on a wall of like materials, friction 0.3, at angles
 from sticking to full slip: elastic for several values of nu, and with Thornton and Ning's curve for
 several yield pressures, where LAMMPS gets the normal restitution of the law. Writes
@@ -15,8 +13,8 @@ import math
 
 import numpy as np
 import oblique_codes as codes
-from evidence.shared import write_table
 
+from evidence.shared import write_table
 from restitution import Body, Pair
 from restitution.impacts.oblique import ObliqueCollision, collide_obliquely
 from restitution.impacts.time_integration import StoredForce
@@ -120,7 +118,7 @@ def main() -> None:
     """Write oblique_stiffness.csv."""
     elastic = [each for nu in (0.0, 0.2, 0.3, 0.45) for each in rows(nu, ELASTIC, SHARES)]
     yielding = [each for p_y in (2e9, 0.8e9, 0.3e9) for each in rows(0.3, p_y, (0.8, 1.0))]
-    write_table("oblique_stiffness.csv", elastic + yielding)
+    write_table("oblique_stiffness/oblique_stiffness.csv", elastic + yielding)
 
 
 if __name__ == "__main__":

@@ -1,10 +1,9 @@
 """Areas of periodic contacts beside closed forms and theories, for docs/periodic.md.
 
-    python evidence/periodic/periodic.py SURFACE…   # compute: narrow, broad, jagged, challenge-2048, …
-    python evidence/periodic/periodic.py            # draw docs/images/periodic.png, print the tables
-
-Computed areas are kept in evidence/periodic/periodic.csv. `challenge-2048` and `challenge-4096` have the
-spectrum of the contact-mechanics challenge. The larger one takes 5 minutes and 2 GB per pressure.
+With names of surfaces (narrow, broad, jagged, challenge-2048, …) it computes areas, which are kept
+in periodic.csv; without, it draws docs/images/periodic.png and prints the tables. `challenge-2048`
+and `challenge-4096` have the spectrum of the contact-mechanics challenge. The larger one takes 5
+minutes and 2 GB per pressure.
 """
 
 from __future__ import annotations
@@ -132,7 +131,7 @@ def draw(rows: list[dict[str, str]]) -> None:
         xscale="log", xlabel="p/(E* h′)", ylabel="relative area over p/(E* h′)", ylim=(1.4, 2.9)
     )
     right.legend(ncols=2, fontsize="small")
-    figure.savefig(HERE.parent / "images" / "periodic.png", dpi=130)
+    figure.savefig(HERE.parents[1] / "docs" / "images" / "periodic.png", dpi=130)
 
 
 def main() -> None:

@@ -1,7 +1,5 @@
 """Adhesion of nominally flat rough bodies, for the table of docs/periodic.md.
 
-    python evidence/periodic/periodic_adhesion.py
-
 Steel on steel, self-affine surfaces (H = 0.8, one seed) in a period of 4.8 µm, loaded to 0.9 of the
 mean gap at first touch and separated; each on two grids.
 """

@@ -1,7 +1,6 @@
 """Compare the models with impacts in which a sphere or a flat yields.
 
-    python evidence/plasticity_models/bodies.py            # write bodies.csv and the figure; minutes
-    python evidence/plasticity_models/bodies.py --figure   # only the figure
+Writes bodies.csv and the figure, in minutes; `--figure` only draws the figure.
 
 The references are in `finite_elements/data/bodies.csv`. COR of a model depends only on
 ω, and its contact radius over the radius is proportional to the strength over the contact modulus.
@@ -15,10 +14,11 @@ import math
 from pathlib import Path
 
 import numpy as np
+
 from compare import IMAGES, MODELS, NODES, at_depth, material, pair_of
 
 HERE = Path(__file__).parent
-REFERENCES = HERE / "finite_elements" / "data" / "bodies.csv"
+REFERENCES = HERE.parent / "finite_elements" / "data" / "bodies.csv"
 TABLE = HERE / "bodies.csv"
 _STRENGTH = 0.001  # over the contact modulus
 _R, _E, _NU = 500e-6, 210e9, 0.3

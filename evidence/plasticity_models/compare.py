@@ -22,9 +22,9 @@ from pathlib import Path
 import numpy as np
 
 HERE = Path(__file__).parent
-CONVERGENCE = HERE / "finite_elements" / "data" / "convergence.csv"
+CONVERGENCE = HERE.parent / "finite_elements" / "data" / "convergence.csv"
 TABLE = HERE / "models.csv"
-IMAGES = HERE.parent / "docs" / "images"
+IMAGES = HERE.parents[1] / "docs" / "images"
 # Constants of the model were chosen on these; all others were computed afterwards.
 CHOSEN_ON = ("smooth_0.001", "waves_A0.03um_L8um")
 MODELS = ("expanding-cavity", "equilibrium", "truncated")
@@ -191,7 +191,7 @@ def _row(case: str, name: str, contact_of: tuple, reference: dict, mine: dict) -
 def compute(names: list[str]) -> list[dict]:
     """Compute the rows of the named cases, or of all cases."""
     rows = []
-    for file in sorted(HERE.glob("*/data/*.json")):
+    for file in sorted(HERE.parent.glob("*/data/*.json")):
         if names and file.stem not in names:
             continue
         reference = json.loads(file.read_text())

@@ -1,7 +1,7 @@
 """Pull-off of a JKR sphere on coarse grids by both criteria of detachment, for docs/adhesion.md.
 
-`python -m evidence.pull_off.pull_off`; about three minutes. `pull_off.csv` has the pull-off force from
-40 depths and places of the apex, each reached directly and by two random sequences of steps.
+About three minutes. `pull_off.csv` has the pull-off force from 40 depths and places of the apex,
+each reached directly and by two random sequences of steps.
 """
 
 from __future__ import annotations
@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from evidence.shared import write_table
 
+from evidence.shared import write_table
 from restitution import Body, Contact, Grid, Pair, Surface, solve
 from restitution.contact.loading import step
 from restitution.contact.separation import separate, separation_of
@@ -112,7 +112,7 @@ def main():
     found = [pull_off(8, (0, 0), "crack-closure", depth) for depth in DEPTHS]
     row(f"crack-closure, {len(DEPTHS)} depths | 8", found)
     rows = [random_case(number) for number in range(CASES)]
-    write_table("pull_off.csv", rows)
+    write_table("pull_off/pull_off.csv", rows)
     found = np.array([[each[name] for name in ("direct", "steps_1", "steps_2")] for each in rows])
     row(f"crack-closure, {CASES} random depths and apexes, random steps | 8", found.ravel())
     off = np.abs(found[:, 1:] - found[:, :1])

@@ -10,8 +10,8 @@ position of first touch between the nodes does not affect the comparison.
 from __future__ import annotations
 
 import numpy as np
-from evidence.shared import PAIR, write_image, write_table
 
+from evidence.shared import PAIR, write_image, write_table
 from restitution import Contact, Grid, collide, generate_surface, refine, solve
 from restitution.contact.checks.resolution import NODES_PER_PATCH, median_patch
 from restitution.plots.figure import GREY, Axis, Band, Chart, Figure, Mark, Points
@@ -98,7 +98,7 @@ def richardson(values):
 def main():
     """Compute, print and draw."""
     table = list(rows())
-    write_table("resolution.csv", table)
+    write_table("resolution/resolution.csv", table)
     largest, median, off = np.array(list(errors(table))).T
     print("| nodes | cases | rms | 90 % within | worst |\n|---|---|---|---|---|")
     for name, nodes in (("largest patch", largest), ("median patch", median)):

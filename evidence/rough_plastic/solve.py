@@ -1,6 +1,6 @@
 """Rigid rough sphere pressed into an elastic-plastic half-space, with Tamaas.
 
-Runs in an environment of its own that holds tamaas, numpy and scipy (see README.md); nothing else
+Runs in an environment of its own that holds tamaas, numpy and scipy (see method.md); nothing else
 in this project needs them. `contact.py` solves; here are the surfaces, the loading and the files.
 
 Units inside: micrometre, MPa, hence micronewton; files are in SI units.

@@ -7,8 +7,8 @@ Writes evidence/shallow/shallow.csv and docs/images/shallow.png. Half a minute:
 from __future__ import annotations
 
 import numpy as np
-from evidence.shared import PAIR, write_image, write_table
 
+from evidence.shared import PAIR, write_image, write_table
 from restitution import Contact, Grid, collide, generate_surface, refine, solve
 from restitution.contact.checks.resolution import median_patch, resolves
 from restitution.plots.cor import cor_axis
@@ -76,7 +76,7 @@ def draw(table):
 def main():
     """Compute, print and draw."""
     table = list(rows())
-    write_table("shallow.csv", table)
+    write_table("shallow/shallow.csv", table)
     draw(table)
     print("| depth, nm | grid | one node | COR at Rq = 0.1, 0.2, 0.5, 1 µm (means of 3) |")
     print("|---|---|---|---|")

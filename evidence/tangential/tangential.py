@@ -1,10 +1,8 @@
 """The tangential law of oblique impacts against tangential boundary elements.
 
-    python -m evidence.tangential.tangential
+Writes tangential.csv and prints the table of docs/oblique.md. Half an hour.
 
-Writes evidence/tangential/tangential.csv and prints the table of docs/oblique.md. Half an hour.
-
-Each contact is run as a case, and the one-dimensional law (`laws.foundation`) is made from its
+Each contact is run as a case, and the one-dimensional law (`impacts.foundation`) is made from its
 stored results as in `restitution simulate`. The boundary elements (`contact.tangential`) solve
 the same contact. At the deepest point and half-way through unloading, with the normal force held
 constant, the study compares the tangential stiffness without slip, the force at three
@@ -25,8 +23,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from evidence.shared import write_table
 
+from evidence.shared import write_table
 from restitution import run, solve, step
 from restitution.case.case_file import parse_case
 from restitution.contact.state import State
@@ -373,7 +371,7 @@ def main() -> None:
             print(found, sample, flush=True)
             row.update((key, float(f"{v:.5g}")) for key, v in row.items() if isinstance(v, float))
             rows.append(row)
-            write_table("tangential.csv", rows)
+            write_table("tangential/tangential.csv", rows)
             if found == number:
                 break
     report(rows)

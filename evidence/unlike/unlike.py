@@ -1,7 +1,5 @@
 """Oblique impacts of smooth spheres of unlike materials, with the coupling that the law neglects.
 
-    python -m evidence.unlike.unlike
-
 Writes evidence/unlike/unlike.csv and prints its table; about ten minutes. Pressure moves unlike
 surfaces tangentially, and traction moves them normally. With κ = β/(πE*), β the second constant of
 Dundurs, the surfaces move relative to each other by
@@ -26,8 +24,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 from scipy.special import ellipk
-from evidence.shared import write_table
 
+from evidence.shared import write_table
 from restitution.contact.influence import cerruti_displacement, love_displacement
 
 Array = NDArray[np.float64]
@@ -213,7 +211,7 @@ def main() -> None:
                    "stiffness_change": change}  # fmt: skip
             table.append({key: float(f"{value:.5g}") for key, value in row.items()})
             print(table[-1], f"{impulse / alike - 1:+.4f}", flush=True)
-    write_table("unlike.csv", table)
+    write_table("unlike/unlike.csv", table)
 
 
 if __name__ == "__main__":

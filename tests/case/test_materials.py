@@ -196,7 +196,7 @@ def test_a_value_outside_its_spread_is_refused():
 
 
 def test_the_page_of_materials_is_up_to_date():
-    study = runpy.run_path(str(DOCS / "studies" / "materials.py"))
+    study = runpy.run_path(str(DOCS.parent / "evidence" / "materials" / "materials.py"))
     page = (DOCS / "materials.md").read_text(encoding="utf-8")
     assert study["table"]() in page
     assert study["pairs"]() in page

@@ -2,19 +2,19 @@
 
 import csv
 import math
-import sys
 from pathlib import Path
 
 import pytest
 
 from elastic_force import elastic
+from evidence.maw import maw
 from restitution import Body, Pair
 from restitution.errors import CaseError
 from restitution.impacts.full_slip import full_slip_angle, full_slip_restitution
 from restitution.impacts.oblique import collide_obliquely
 from tolerance import approx
 
-STUDIES = Path(__file__).parents[2] / "docs" / "studies"
+STUDIES = Path(__file__).parents[2] / "evidence" / "maw"
 MU = 0.1
 BALL = Body(1e-3, 70e9, 0.3, 2500)
 
@@ -55,11 +55,6 @@ def test_the_annuli_converge_and_their_coarse_grid_is_computed_again():
         coarse, middle, fine = (row[f"psi_2_{n}_rings"] for n in (30, 60, 120))
         assert abs(fine - middle) <= 0.62 * abs(middle - coarse) + 2e-6
         assert row["error"] < 0.0025
-    sys.path.insert(0, str(STUDIES))
-    try:
-        import maw
-    finally:
-        sys.path.remove(str(STUDIES))
     assert approx(maw.KAPPA) == 2 * 0.7 / 1.7
     for psi in (1.0, 4.0, 6.0):
         assert maw.impact(psi, 30) == approx(stored[psi]["psi_2_30_rings"], rel=1e-4)

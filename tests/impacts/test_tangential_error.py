@@ -13,7 +13,7 @@ from restitution.impacts.tangential_error import dundurs, tangential_error
 from restitution.impacts.time_integration import StoredForce, StoredRoughness
 from tolerance import approx
 
-STUDIES = Path(__file__).parents[2] / "docs" / "studies"
+STUDIES = Path(__file__).parents[2] / "evidence"
 STEEL = Body(500e-6, 210e9, 0.25, 7850)
 
 
@@ -69,7 +69,7 @@ def test_unlike_bodies_have_an_error_that_falls_with_friction(friction, expected
 
 def test_coupled_solutions_lie_within_the_error_for_unlike_bodies():
     ratios = [], []
-    with open(STUDIES / "unlike.csv") as file:
+    with open(STUDIES / "unlike" / "unlike.csv") as file:
         for row in csv.DictReader(file):
             beta, friction = float(row["beta"]), float(row["friction"])
             # A body on a rigid one: β = (1 − 2ν)/(2 − 2ν).
@@ -126,7 +126,7 @@ def test_few_unloading_curves_add_to_the_error_of_yielded_rough_contacts(curves,
 
 def test_the_differences_from_boundary_elements_lie_within_the_error():
     """The table of the study: stiffness, force, loop (three times) and e_t of all contacts."""
-    with open(STUDIES / "tangential.csv") as file:
+    with open(STUDIES / "tangential" / "tangential.csv") as file:
         rows = list(csv.DictReader(file))
     assert sum(row["blind"] == "True" for row in rows) >= 50
     ratios = {"stiffness": [], "force": [], "loop": [], "e_t": []}

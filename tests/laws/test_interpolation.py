@@ -17,7 +17,7 @@ from restitution.laws.interpolation import RatioCurve
 from restitution.theory import ThorntonNing
 from tolerance import approx
 
-BETWEEN = Path(__file__).parents[2] / "docs" / "studies" / "between_velocities.csv"
+BETWEEN = Path(__file__).parents[2] / "evidence" / "dem" / "between_velocities.csv"
 R, E_STAR, P_Y, MASS = 250e-6, 112e9, 750e6, 2e-6
 
 

@@ -19,7 +19,7 @@ from restitution.results.writer import ResultsFolder
 from restitution.runs.run import run_case
 from tolerance import approx
 
-STUDIES = Path(__file__).parents[2] / "docs" / "studies"
+STUDIES = Path(__file__).parents[2] / "evidence" / "mixture"
 
 
 def law_at(family, radius, folder):

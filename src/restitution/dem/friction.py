@@ -4,7 +4,7 @@ DEM codes have one tangential spring per contact, with the stiffness of a contac
 (Mindlin 1949: 8 G* a, with the contact radius a and 1/G* = Σ 2 (2 − ν)(1 + ν)/E). In a real contact
 the edge slides first, so the mean stiffness during an impact is smaller. The tangential restitution
 of elastic spheres in LAMMPS (`mindlin_rescale/force`) was compared with `impacts.oblique`,
-for ν from 0 to 0.45 and any angle (evidence/oblique_stiffness/oblique_stiffness.py). With 0.8 times Mindlin's
+for ν from 0 to 0.45 and any angle (evidence/oblique_stiffness). With 0.8 times Mindlin's
 stiffness, the difference is at most 0.03. With the full stiffness, the tangential restitution is up
 to 0.13 too large.
 """

@@ -1,7 +1,7 @@
 """Error of the tangential law, from a comparison with boundary elements.
 
 The tangential law is the tangential force of a row of springs (`foundation`). docs/oblique.md
-describes the comparison (`evidence/tangential/tangential.py` and `unlike.py`). For bodies of equal
+describes the comparison (`evidence/tangential` and `evidence/unlike`). For bodies of equal
 materials with Poisson's ratio 0, the law is exact with any roughness, as long as the bodies do not
 yield. Four effects cause an error:
 
