@@ -17,7 +17,7 @@ from restitution.laws.from_results import bare_law
 from restitution.laws.law import Law
 from restitution.mixtures.family import Family, families
 from restitution.mixtures.mixture_file import parse_mixture
-from restitution.mixtures.scaling import Computed
+from restitution.mixtures.scaling import FamilyLaws
 from restitution.results.writer import ResultsFolder
 from restitution.runs.run import run_case
 
@@ -57,14 +57,14 @@ def checks(values: tuple[object, ...], folder: Path) -> list[dict]:
     radii = family.radii
     middle = min(radii, key=lambda R: abs(math.log(R * R / (radii[0] * radii[-1]))))
     known = (radii[0], middle, radii[-1])
-    computed = Computed(family, tuple(law_at(family, R, folder) for R in known))
+    computed = FamilyLaws(family, tuple(law_at(family, R, folder) for R in known))
     rows = []
     for radius in radii:
         if radius in known:
             continue
         direct = law_at(family, radius, folder)
-        meeting = next(m for m in family.meetings if math.isclose(m.radius, radius, rel_tol=1e-9))
-        for point in computed.law(meeting).points:
+        pair = next(m for m in family.pairs if math.isclose(m.radius, radius, rel_tol=1e-9))
+        for point in computed.law(pair).points:
             same_work = math.sqrt(2 * point.loading_work / direct.mass)
             found = direct.at(min(max(same_work, direct.lowest), direct.highest))
             rows.append(

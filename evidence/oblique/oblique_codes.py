@@ -19,7 +19,7 @@ from pathlib import Path
 
 from evidence.oblique.oblique import FRICTION, PAIR, REBOUND, SPIN, TANGENTIAL, VELOCITY, elastic
 from evidence.shared import write_table
-from restitution.dem.friction import STIFFNESS_SHARE
+from restitution.dem.pair import STIFFNESS_SHARE
 from restitution.impacts.oblique import collide_obliquely
 from restitution.theory import Hertz
 

@@ -14,7 +14,7 @@ from restitution.dem.codes import lammps as to_lammps
 from restitution.dem.codes import liggghts as to_liggghts
 from restitution.dem.codes import yade as to_yade
 from restitution.dem.export import CODES, export
-from restitution.dem.friction import STIFFNESS_SHARE
+from restitution.dem.pair import STIFFNESS_SHARE
 from restitution.dem.pair_table import pair_table
 from restitution.impacts.oblique import collide_obliquely
 from restitution.laws.particle import Particle

@@ -10,8 +10,7 @@ from elastic_force import elastic
 from evidence.maw import maw
 from restitution import Body, Pair
 from restitution.errors import CaseError
-from restitution.impacts.full_slip import full_slip_angle, full_slip_restitution
-from restitution.impacts.oblique import collide_obliquely
+from restitution.impacts.oblique import collide_obliquely, full_slip_angle, full_slip_restitution
 from tolerance import approx
 
 STUDIES = Path(__file__).parents[2] / "evidence" / "maw"

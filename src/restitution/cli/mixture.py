@@ -29,13 +29,13 @@ def mixture(
 
     from restitution.cli.console import command, say, say_next, say_written, warn
     from restitution.cli.progress import cases_progress
-    from restitution.mixtures.mixture import run_mixture
-    from restitution.mixtures.mixture_file import read_mixture
-    from restitution.mixtures.mixture_folder import (
+    from restitution.mixtures.mixture import (
         condensed_warnings,
         open_mixture_folder,
+        run_mixture,
         write_mixture,
     )
+    from restitution.mixtures.mixture_file import read_mixture
     from restitution.plots.mixture import mixture_figure
     from restitution.plots.static import write_figure
     from restitution.sweeps.executors import chosen_workers

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
 
-from restitution.dem.adhesion import pull_off_force
 from restitution.dem.export_common import unset_pairs
+from restitution.dem.pair import pull_off_force
 from restitution.dem.pair_table import PairTable, pair_table
 from restitution.errors import CaseError, OutputError
 from restitution.laws.law import Law

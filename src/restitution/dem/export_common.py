@@ -13,13 +13,14 @@ import textwrap
 import unicodedata
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache, cached_property, partial
 from importlib.metadata import PackageNotFoundError, version
 
+import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from restitution.dem.notes import about, grouped_warnings
-from restitution.dem.pair import Pair, contact_time
+from restitution.dem.pair import FRICTION, ExportedPair, contact_time
 from restitution.dem.pair_table import PairTable
 from restitution.display import quantity
 from restitution.errors import CaseError, one_line
@@ -28,6 +29,10 @@ from restitution.laws.particle import Particle
 
 STEPS = 5000  # number of time steps in a contact
 
+SCRIPT = "match_velocity.py"
+_ROUNDS = 6  # largest number of runs of the simulation
+_TOLERANCE = 0.005  # change of e below which the script stops
+_SAMPLES = 4  # number of table intervals between two neighbouring computed velocities
 _WIDTH = 98
 _SIGNS = str.maketrans({'"': "'", "`": "'", "\\": "/", "&": "+", "{": "(", "}": ")", "$": "%"})
 _PLAIN = str.maketrans("–—−‐‑’‘“”·×≈→µ", "-----''''.x~>u") | str.maketrans(
@@ -55,7 +60,7 @@ class Export:
     setting: str = ""
 
     @cached_property
-    def pairs(self) -> list[Pair]:
+    def pairs(self) -> list[ExportedPair]:
         """All pairs of the table with their e at `velocity`.
 
         Raises `CaseError` if e is below `lowest`. Raises `DomainError` if `velocity` is outside the
@@ -70,7 +75,7 @@ class Export:
                     f"export to {self.code} requires e of at least {self.lowest:g}; export at a "
                     "higher velocity, or use an adhesive contact model"
                 )
-            found.append(Pair(i, j, bodies[i - 1], bodies[j - 1], law, self.velocity, e))
+            found.append(ExportedPair(i, j, bodies[i - 1], bodies[j - 1], law, self.velocity, e))
         return found
 
     @property
@@ -111,6 +116,46 @@ class Export:
         shared = {"table": self.table, "pairs": self.pairs, "velocity": self.velocity}
         return template.render(shared, head=self.head(sign), ending=self.ending(sign), **values)
 
+    def matching_script(self, command: str, fragment: str, matched: str) -> str:
+        """Make the script `SCRIPT`, which finds one e for each pair of types in a simulation.
+
+        It runs `command`, reads the impact velocities, and takes e from the laws. `fragment` is the
+        exported file with the pairs, and `matched` the file that the script writes.
+        """
+        return self.render(
+            SCRIPT,
+            code=self.code,
+            command=command,
+            fragment=fragment,
+            matched=matched,
+            lowest=self.lowest,
+            points=partial(law_points, lowest=self.lowest),
+            rounds=_ROUNDS,
+            tolerance=_TOLERANCE,
+        )
+
+    def friction_note(self, sign: str = "", tangential: str = "") -> str:
+        """Write comments on the origin of the coefficients of friction.
+
+        Lines begin with `sign`, if one is given. `tangential` describes the tangential settings of
+        the pairs whose cases state a coefficient of friction.
+        """
+        pairs = self.pairs
+        missing = [f"{pair.i} {pair.j}" for pair in pairs if pair.law.friction is None]
+        stated = f"The coefficients of friction are those of the cases. {tangential}"
+        if len(missing) == len(pairs):
+            stated = (
+                f"Friction {FRICTION} is a placeholder: friction is not computed here; set your "
+                "value."
+            )
+        elif missing:
+            stated = (
+                f"Friction {FRICTION} of the pairs {', '.join(missing)} is a placeholder: their "
+                "cases have no interface.friction; set your value. The other coefficients of "
+                f"friction are those of the cases. {tangential}"
+            )
+        return commented(wrapped([stated.strip()]), sign) if sign else stated.strip()
+
     def head(self, sign: str) -> str:
         """Write the comment at the top of each exported file."""
         lines = [self._title(), f"Types, errors, origin and conventions of e: {self.notes_name}"]
@@ -134,6 +179,18 @@ class Export:
     def unset(self) -> list[str]:
         """State which pairs of spheres have no law, and how the user sets their e."""
         return unset_pairs(self.table, self.code, self.setting)
+
+
+def law_points(law: Law, lowest: float) -> list[tuple[float, float]]:
+    """Tabulate e of `law` against velocity (m/s), finely enough for linear interpolation.
+
+    Values of e below `lowest` are replaced by `lowest`.
+    """
+    V = law.column("velocity")
+    fine = np.interp(
+        np.arange((V.size - 1) * _SAMPLES + 1) / _SAMPLES, np.arange(V.size), np.log(V)
+    )
+    return [(v, max(law.at(v).restitution, lowest)) for v in np.exp(fine).tolist()]
 
 
 def unset_pairs(table: PairTable, code: str, setting: str) -> list[str]:

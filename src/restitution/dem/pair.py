@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+
+import numpy as np
 
 from restitution.laws.law import FittedLaw, Law
 from restitution.laws.particle import Particle
 
+STIFFNESS_SHARE = 0.8  # factor on Mindlin's tangential stiffness; `Export.friction_note` says why
 FRICTION = 0.5  # coefficient of friction of pairs whose case gives none; users should replace it
 
 
 @dataclass(frozen=True)
-class Pair:
+class ExportedPair:
     """A pair of particle types `i` ≤ `j` in an export.
 
     `restitution` is e at `velocity` (m/s), which is the impact velocity of the export.
@@ -67,7 +71,7 @@ class Pair:
 
 
 def shear_modulus(first: Particle, second: Particle) -> float:
-    """Mindlin's effective shear modulus G* (Pa) of two bodies (`Pair.shear_modulus`)."""
+    """Mindlin's effective shear modulus G* (Pa) of two bodies (`ExportedPair.shear_modulus`)."""
     return 1 / sum(
         2 * (2 - b.poissons_ratio) * (1 + b.poissons_ratio) / b.youngs_modulus
         for b in (first, second)
@@ -82,3 +86,13 @@ def contact_time(law: Law, radius: float | None = None) -> float:
     """
     R = law.radius if radius is None else radius
     return float(2.87 * (law.mass**2 / (R * law.contact_modulus**2)) ** 0.2)
+
+
+def pull_off_force(law: Law, velocity: float) -> float:
+    """Pull-off force (N) after an impact at `velocity` (m/s).
+
+    The force is interpolated between the computed points, linearly in the logarithm of the
+    velocity. NaN if one of the two neighbouring points has no pull-off force.
+    """
+    V, forces = law.column("velocity"), law.column("pull_off_force")
+    return float(np.interp(math.log(velocity), np.log(V), forces))

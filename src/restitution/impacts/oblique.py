@@ -232,6 +232,44 @@ def course(collision: ObliqueCollision) -> list[dict[str, float]]:
     )
 
 
+def full_slip_angle(friction: float, restitution: float, modulus_ratio: float) -> float:
+    """The smallest angle of impact at which the whole contact slides, for bodies without spin.
+
+    Args:
+        friction: Coefficient of friction µ (dimensionless).
+        restitution: Normal restitution e (dimensionless).
+        modulus_ratio: Ratio G*/E* of tangential to contact modulus (dimensionless).
+
+    Returns:
+        The angle from the normal (rad).
+
+    Source:
+        Maw, Barber and Fawcett (1976) for e = 1. The top of this module derives it for e < 1.
+    """
+    least = 3.5 * (1 + restitution) - restitution / modulus_ratio
+    # If ψ₁ = (G*/E*) tan θ/µ is below 1, the contact sticks at first (Maw, Barber and Fawcett). So
+    # full slip also needs ψ₁ ≥ 1.
+    return math.atan(friction * max(least, 1 / modulus_ratio))
+
+
+def full_slip_restitution(friction: float, restitution: float, angle: float) -> float:
+    """Tangential restitution of the particle centres with full slip: 1 − µ (1 + e)/tan θ.
+
+    Args:
+        friction: Coefficient of friction µ (dimensionless).
+        restitution: Normal restitution e (dimensionless).
+        angle: Angle of impact from the normal (rad), above 0.
+
+    Returns:
+        Ratio of the relative tangential velocities of the particle centres after and before the
+        impact (dimensionless).
+
+    Source:
+        The impulse of a sliding contact: µ times the normal impulse, (1 + e) m* V_n.
+    """
+    return 1 - friction * (1 + restitution) / math.tan(angle)
+
+
 def _slide(
     law: StoredForce, normal: ReferenceCollision, slip: float, friction: float, error: float
 ) -> tuple[dict[str, Array], float, float, float]:

@@ -11,7 +11,7 @@ from pydantic import ValidationError
 
 from restitution.case.bodies import BodyTable
 from restitution.errors import CaseError, OutputError, first_problem, one_line
-from restitution.laws.law import Conventions, Law, Point
+from restitution.laws.law import Conventions, Law, LawPoint
 from restitution.laws.law_files import LAW_FILE
 from restitution.laws.particle import Particle
 from restitution.results.reader import EnsembleResults, RunResults, read_run
@@ -146,7 +146,7 @@ def _read(out: Path) -> RunResults:
 
 
 def _error_includes(diagnostics: Mapping[str, object], *, asked: bool) -> str:
-    """State in words what `Point.error` includes, and what it does not include.
+    """State in words what `LawPoint.error` includes, and what it does not include.
 
     `asked` states whether the case asks for the total error.
     """
@@ -160,15 +160,15 @@ def _error_includes(diagnostics: Mapping[str, object], *, asked: bool) -> str:
     return f"{includes}; not: {excludes}{error}"
 
 
-def _points(run: RunResults) -> list[Point]:
-    found: list[Point] = []
+def _points(run: RunResults) -> list[LawPoint]:
+    found: list[LawPoint] = []
     for row in run.curve.rows:
         velocity, work = row["impact_velocity_m_per_s"], row["loading_work_J"]
         if not velocity > 0 or not work > 0 or (found and velocity <= found[-1].velocity):
             continue
         pull_off, error = row["pull_off_force_N"], row["pull_off_error_N"]
         found.append(
-            Point(
+            LawPoint(
                 velocity=velocity,
                 restitution=row["restitution"],
                 error=_error(row, asked=run.case.total_error),

@@ -30,7 +30,7 @@ _SAME = 1.01e-4
 
 
 @checked_dataclass(frozen=True, kw_only=True, config=STRICT)
-class Point:
+class LawPoint:
     """The result at one impact velocity, in SI units.
 
     `ratio` is W_u/W_l, the unloading work divided by the loading work. It is zero or negative if
@@ -172,7 +172,7 @@ class Law:
     smooth_sticking_velocity: float | None
     sticks_below: float | None
     sticks_below_error: float | None = None
-    points: Annotated[tuple[Point, ...], Field(min_length=1)]
+    points: Annotated[tuple[LawPoint, ...], Field(min_length=1)]
     fit: CompactFit | None = None
     laws: tuple[FittedLaw, ...] = ()
     warnings: tuple[str, ...] = ()

@@ -34,7 +34,7 @@ _PER_WAVE = 5  # number of nodes per correlation length, or per shortest wavelen
 
 
 @dataclass(frozen=True)
-class Meeting:
+class ParticlePair:
     """Two particles that can meet, with their reduced radius R* (m) and reduced mass m* (kg)."""
 
     first: Particle
@@ -62,14 +62,12 @@ class Family:
         return f"{self.first.name}+{self.second.name}"
 
     @cached_property
-    def meetings(self) -> tuple[Meeting, ...]:
+    def pairs(self) -> tuple[ParticlePair, ...]:
         """All pairs of a particle of `first` and a particle of `second`, each pair once."""
         ours, theirs = _particles(self.first), _particles(self.second)
         if self.second is self.first:
-            return tuple(
-                itertools.starmap(_meeting, itertools.combinations_with_replacement(ours, 2))
-            )
-        return tuple(itertools.starmap(_meeting, itertools.product(ours, theirs)))
+            return tuple(itertools.starmap(_pair, itertools.combinations_with_replacement(ours, 2)))
+        return tuple(itertools.starmap(_pair, itertools.product(ours, theirs)))
 
     @cached_property
     def radii(self) -> tuple[float, ...]:
@@ -78,7 +76,7 @@ class Family:
         Radii that differ by at most 1e-9 (relative) count as one.
         """
         found: list[float] = []
-        for radius in sorted(meeting.radius for meeting in self.meetings):
+        for radius in sorted(pair.radius for pair in self.pairs):
             if not found or radius > found[-1] * (1 + 1e-9):
                 found.append(radius)
         return tuple(found)
@@ -142,8 +140,8 @@ class Family:
         asked = self.mixture.velocities
         own = _particle(self.first, radius if self.second.wall else 2 * radius)
         other = _particle(self.second, None if self.second.wall else 2 * radius)
-        kappa = _meeting(own, other).kappa
-        scales = [math.sqrt(meeting.kappa / kappa) for meeting in self.meetings]
+        kappa = _pair(own, other).kappa
+        scales = [math.sqrt(pair.kappa / kappa) for pair in self.pairs]
         low, high = asked[0] * min(scales), asked[-1] * max(scales)
         count = len(asked) - 1
         step = (asked[-1] / asked[0]) ** (1 / count) if count else 1.5
@@ -212,14 +210,14 @@ def _particles(component: Component) -> list[Particle]:
     ]
 
 
-def _meeting(first: Particle, second: Particle) -> Meeting:
+def _pair(first: Particle, second: Particle) -> ParticlePair:
     bodies = (
         Body(body.radius or math.inf, body.youngs_modulus, body.poissons_ratio, body.density)
         for body in (first, second)
     )
     pair = Pair(*bodies)
     assert pair.mass is not None  # `parse_mixture` requires the density of every material
-    return Meeting(first, second, pair.radius, pair.mass)
+    return ParticlePair(first, second, pair.radius, pair.mass)
 
 
 def _half_width(case: Case) -> float:

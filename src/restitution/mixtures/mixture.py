@@ -9,23 +9,28 @@ This is repeated until no error exceeds its limit.
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
+from restitution.display import some_of, without_numbers
 from restitution.errors import OutputError
 from restitution.laws.from_results import bare_law
 from restitution.laws.law import Law
-from restitution.mixtures.family import Family, Meeting, families
+from restitution.laws.law_files import LAWS, MIXTURE_FILE, write_law
+from restitution.mixtures.family import Family, ParticlePair, families
 from restitution.mixtures.mixture_file import Mixture
-from restitution.mixtures.scaling import Computed
+from restitution.mixtures.scaling import FamilyLaws
+from restitution.results.writer import write_json, write_table, writing
 from restitution.sweeps.executors import Workers
 from restitution.sweeps.scheduler import Tally, run_study
-from restitution.sweeps.study_folder import StudyFolder
-from restitution.sweeps.sweep import SweptCase
+from restitution.sweeps.study_folder import STUDY_FILE, StudyFolder, prepare_folder
+from restitution.sweeps.sweep import Study, SweptCase
 
+RUNS, PAIRS = "runs", "pairs.csv"
 Progress = Callable[[Tally], None]
 
 
@@ -65,7 +70,7 @@ def run_mixture(
         _run_all(tuple(cases.values()), folder, out, workers, progress)
         computed = [_computed(family, cases, out) for family in found]
         wanted = [(each.family, radius) for each in computed for radius in _more_radii(each)]
-    return [_pair_law(each, meeting) for each in computed for meeting in each.family.meetings]
+    return [_pair_law(each, pair) for each in computed for pair in each.family.pairs]
 
 
 def _run_all(
@@ -89,11 +94,11 @@ def _run_all(
 
 def _computed(
     family: Family, cases: Mapping[tuple[str, float], SweptCase], out: StudyFolder
-) -> Computed:
+) -> FamilyLaws:
     """Read the laws of `family` that have been computed so far, in order of reduced radius."""
     radii = sorted(radius for name, radius in cases if name == family.name)
     folders = [out.folder_of(cases[family.name, radius]) for radius in radii]
-    return Computed(family, tuple(map(bare_law, folders)))
+    return FamilyLaws(family, tuple(map(bare_law, folders)))
 
 
 def _first_radii(family: Family) -> list[float]:
@@ -102,14 +107,14 @@ def _first_radii(family: Family) -> list[float]:
     return sorted({radii[0], middle, radii[-1]})
 
 
-def _more_radii(computed: Computed) -> Iterator[float]:
+def _more_radii(computed: FamilyLaws) -> Iterator[float]:
     """Yield the reduced radii (m) at which laws are computed next.
 
     A pair whose reduced radius lies between two computed radii can have too large an interpolation
     error. One radius between these two is then chosen.
     """
     family = computed.family
-    poor = {meeting.radius for meeting in family.meetings if not computed.is_good(meeting)}
+    poor = {pair.radius for pair in family.pairs if not computed.is_good(pair)}
     for low, high in zip(computed.radii[:-1], computed.radii[1:], strict=True):
         if any(low < radius < high for radius in poor):
             inside = [r for r in family.radii if low < r < high and not computed.has(r)]
@@ -120,9 +125,91 @@ def _nearest(radii: Sequence[float], radius: float) -> float:
     return radii[int(np.abs(np.log(np.array(radii) / radius)).argmin())]
 
 
-def _pair_law(computed: Computed, meeting: Meeting) -> PairLaw:
+def _pair_law(computed: FamilyLaws, pair: ParticlePair) -> PairLaw:
     return PairLaw(
-        computed.law(meeting),
-        computed.has(meeting.radius),
-        max(computed.interpolation_errors(meeting)),
+        computed.law(pair),
+        computed.has(pair.radius),
+        max(computed.interpolation_errors(pair)),
     )
+
+
+def open_mixture_folder(out: Path, mixture: Mixture, *, resume: bool) -> StudyFolder:
+    """Open the folder in `out` that holds the runs of `mixture`.
+
+    Raises `OutputError` if `out` holds other files, if there is nothing to resume, or if `out`
+    cannot be written.
+    """
+    prepare_folder(out, MIXTURE_FILE, mixture.text, resume=resume, what="mixture")
+    begun = (out / RUNS / STUDY_FILE).is_file()
+    without_cases = Study(
+        mixture.title, mixture.text, {"pair": [], "reduced_radius": []}, "paired", ()
+    )
+    return StudyFolder(out / RUNS, without_cases, resume=begun)
+
+
+def write_mixture(
+    out: Path, mixture: Mixture, pairs: Sequence[PairLaw], runs: int, seconds: float
+) -> list[str]:
+    """Write the laws of all `pairs`, a table of these laws, and the summary.
+
+    `runs` is the number of computed curves, and `seconds` the time for computing them. Returns the
+    names of the files and folders in `out`. Raises `OutputError`.
+    """
+    with writing(out):
+        shutil.rmtree(out / LAWS, ignore_errors=True)
+        (out / LAWS).mkdir()
+    rows: list[dict[str, float | str]] = []
+    for number, pair in enumerate(pairs, 1):
+        name = f"pair-{number:03d}"
+        write_law(pair.law, out / LAWS / name)
+        rows += [
+            {
+                "law": name,
+                "first": pair.law.first.name,
+                "first_radius_m": pair.law.first.radius or float("inf"),
+                "second": pair.law.second.name,
+                "second_radius_m": pair.law.second.radius or float("inf"),
+                "reduced_radius_m": pair.law.radius,
+                "reduced_mass_kg": pair.law.mass,
+                "computed": pair.computed,
+                "velocity_m_per_s": point.velocity,
+                "restitution": point.restitution,
+                "restitution_error": point.error,
+                "resolved": point.resolved,
+            }
+            for point in pair.law.points
+        ]
+    write_table(out / PAIRS, rows)
+    write_json(
+        out / "summary.json",
+        {
+            "title": mixture.title,
+            "pairs": len(pairs),
+            "curves_computed": runs,
+            "pairs_interpolated": sum(not pair.computed for pair in pairs),
+            "largest_interpolation_error": max(pair.interpolation_error for pair in pairs),
+            "largest_restitution_error": max(
+                point.error for pair in pairs for point in pair.law.points
+            ),
+            "warnings": condensed_warnings(pairs),
+            "seconds": round(seconds, 1),
+        },
+    )
+    return [LAWS, MIXTURE_FILE, PAIRS, RUNS, "summary.json"]
+
+
+def condensed_warnings(pairs: Sequence[PairLaw]) -> list[str]:
+    """List each warning once, with its pairs.
+
+    Warnings that differ only in numbers count as one.
+    """
+    found: dict[str, list[tuple[str, str]]] = {}
+    for pair in pairs:
+        family = f"{pair.law.first.name}+{pair.law.second.name}"
+        for warning in dict.fromkeys(pair.law.warnings):
+            found.setdefault(without_numbers(warning), []).append((family, warning))
+    return [
+        f"{len(of)} of {len(pairs)} pairs ({some_of([family for family, _ in of])}): {of[0][1]}"
+        + ("" if len({text for _, text in of}) == 1 else " (with other numbers in other pairs)")
+        for of in found.values()
+    ]

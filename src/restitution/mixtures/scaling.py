@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 
 from restitution.laws.compact_fit import compact_fit
 from restitution.laws.interpolation import RatioCurve
-from restitution.laws.law import Law, Point
-from restitution.mixtures.family import Family, Meeting
+from restitution.laws.law import Law, LawPoint
+from restitution.mixtures.family import Family, ParticlePair
 
 Array = NDArray[np.float64]
 
@@ -33,7 +33,7 @@ _SAME = 1e-9  # largest relative difference of radii that count as equal
 
 
 @dataclass(frozen=True)
-class Computed:
+class FamilyLaws:
     """The computed laws of a family (all pairs of two components), by increasing reduced radius."""
 
     family: Family
@@ -48,52 +48,52 @@ class Computed:
         """Whether a law was computed at the reduced `radius` (m)."""
         return bool((np.abs(self.radii / radius - 1) < _SAME).any())
 
-    def is_good(self, meeting: Meeting) -> bool:
+    def is_good(self, pair: ParticlePair) -> bool:
         """Whether the law of the pair is accurate enough without a law at another reduced radius.
 
         At every velocity, the error of COR due to interpolation in R* must not exceed the larger of
         two limits. One is the `interpolation_error` given for the mixture. The other is a quarter
         of the error of the computed laws, but not more than 0.05.
         """
-        points, errors = self._points(meeting), self.interpolation_errors(meeting)
+        points, errors = self._points(pair), self.interpolation_errors(pair)
         limit = self.family.mixture.interpolation_error
         return all(
             error <= max(limit, min(_SHARE * (point.error - error), _MOST))
             for point, error in zip(points, errors, strict=True)
         )
 
-    def interpolation_errors(self, meeting: Meeting) -> list[float]:
+    def interpolation_errors(self, pair: ParticlePair) -> list[float]:
         """The error of COR due to interpolation in R*, at each velocity of the mixture."""
-        curves = self._curves(meeting)
-        if self.has(meeting.radius):
+        curves = self._curves(pair)
+        if self.has(pair.radius):
             return [0.0] * len(curves)
         return [
-            _error_of(curve, meeting.radius, curves[max(k - 1, 0) : k + 2])
+            _error_of(curve, pair.radius, curves[max(k - 1, 0) : k + 2])
             for k, curve in enumerate(curves)
         ]
 
-    def law(self, meeting: Meeting) -> Law:
+    def law(self, pair: ParticlePair) -> Law:
         """The law of one pair at the velocities of the mixture.
 
         The error of a point is the error of the computed laws plus the interpolation error.
         """
-        nearest = self.laws[int(np.abs(np.log(self.radii / meeting.radius)).argmin())]
+        nearest = self.laws[int(np.abs(np.log(self.radii / pair.radius)).argmin())]
         kappa = nearest.mass / nearest.radius**3
-        slower = (meeting.radius / nearest.radius) ** (2 / 3)
-        slower *= math.sqrt(nearest.mass / meeting.mass)
-        how = "computed" if self.has(meeting.radius) else "interpolated in R* at equal W/R*^3"
+        slower = (pair.radius / nearest.radius) ** (2 / 3)
+        slower *= math.sqrt(nearest.mass / pair.mass)
+        how = "computed" if self.has(pair.radius) else "interpolated in R* at equal W/R*^3"
         law = replace(
             nearest,
             title=self.family.mixture.title or self.family.name,
-            first=meeting.first,
-            second=meeting.second,
-            radius=meeting.radius,
-            mass=meeting.mass,
+            first=pair.first,
+            second=pair.second,
+            radius=pair.radius,
+            mass=pair.mass,
             model={**nearest.model, "pair": how},
-            yield_velocity=_scaled(nearest.yield_velocity, math.sqrt(kappa / meeting.kappa)),
+            yield_velocity=_scaled(nearest.yield_velocity, math.sqrt(kappa / pair.kappa)),
             smooth_sticking_velocity=_scaled(nearest.smooth_sticking_velocity, slower),
             sticks_below_error=_scaled(nearest.sticks_below_error, slower),
-            points=self._points(meeting),
+            points=self._points(pair),
             fit=None,
             laws=(),
         )
@@ -101,28 +101,28 @@ class Computed:
         law = replace(law, sticks_below=None if law.sticks_everywhere else below)
         return replace(law, fit=compact_fit(law))
 
-    def _points(self, meeting: Meeting) -> tuple[Point, ...]:
-        velocities, curves = self.family.mixture.velocities, self._curves(meeting)
-        errors = self.interpolation_errors(meeting)
+    def _points(self, pair: ParticlePair) -> tuple[LawPoint, ...]:
+        velocities, curves = self.family.mixture.velocities, self._curves(pair)
+        errors = self.interpolation_errors(pair)
         return tuple(
-            self._point(meeting, V, curve, error)
+            self._point(pair, V, curve, error)
             for V, curve, error in zip(velocities, curves, errors, strict=True)
         )
 
-    def _curves(self, meeting: Meeting) -> list[RatioCurve]:
+    def _curves(self, pair: ParticlePair) -> list[RatioCurve]:
         """Make the curve of the work ratio W_u/W_l against R* for each velocity of the mixture."""
         ratios = (
-            np.array([law.curve().at(_of(law, V, meeting)) for law in self.laws], dtype=float)
+            np.array([law.curve().at(_of(law, V, pair)) for law in self.laws], dtype=float)
             for V in self.family.mixture.velocities
         )
         return [RatioCurve(self.radii, each, adhesive=False) for each in ratios]
 
-    def _point(self, meeting: Meeting, V: float, curve: RatioCurve, between: float) -> Point:
-        ratio = _value(curve, meeting.radius)
-        after, t = curve.interval(meeting.radius) if len(self.laws) > 1 else (1, 0.0)
+    def _point(self, pair: ParticlePair, V: float, curve: RatioCurve, between: float) -> LawPoint:
+        ratio = _value(curve, pair.radius)
+        after, t = curve.interval(pair.radius) if len(self.laws) > 1 else (1, 0.0)
         laws = self.laws[after - 1 : after + 1]
         shares = (1 - t, t)[: len(laws)]
-        estimates = [law.at(_of(law, V, meeting)) for law in laws]
+        estimates = [law.at(_of(law, V, pair)) for law in laws]
         used = [k for k, share in enumerate(shares) if share > _SAME]
 
         def mean(name: str, power: int) -> float:
@@ -130,21 +130,21 @@ class Computed:
 
             The interpolated quantity is the field divided by R*^power.
             """
-            R = meeting.radius
+            R = pair.radius
             return R**power * sum(
                 shares[k]
-                * _column_at(laws[k], name, _of(laws[k], V, meeting))
+                * _column_at(laws[k], name, _of(laws[k], V, pair))
                 / laws[k].radius ** power
                 for k in used
             )
 
         pull_off = [point.pull_off_force for law in laws for point in law.points]
-        return Point(
+        return LawPoint(
             velocity=V,
             restitution=_root(ratio),
             error=sum(shares[k] * estimates[k].error for k in used) + between,
             ratio=ratio,
-            loading_work=0.5 * meeting.mass * V * V,
+            loading_work=0.5 * pair.mass * V * V,
             indentation=mean("indentation", 1),
             force=mean("force", 2),
             pull_off_force=None if None in pull_off else mean("pull_off_force", 1),
@@ -152,13 +152,13 @@ class Computed:
         )
 
 
-def _of(law: Law, V: float, meeting: Meeting) -> float:
-    """Velocity (m/s) at which W/R*³ of `law` equals W/R*³ of the pair `meeting` at `V` (m/s).
+def _of(law: Law, V: float, pair: ParticlePair) -> float:
+    """Velocity (m/s) at which W/R*³ of `law` equals W/R*³ of the pair `pair` at `V` (m/s).
 
     W is the loading work, and R* the reduced radius. If the velocity is outside the range of `law`
     by at most 1e-3 (relative), the nearest velocity of this range is returned.
     """
-    velocity = V * math.sqrt(meeting.kappa / (law.mass / law.radius**3))
+    velocity = V * math.sqrt(pair.kappa / (law.mass / law.radius**3))
     near = law.lowest * (1 - 1e-3) <= velocity <= law.highest * (1 + 1e-3)
     return min(max(velocity, law.lowest), law.highest) if near else velocity
 

@@ -6,22 +6,43 @@ that it computes at a time, and a channel for progress. So `scheduler` treats bo
 
 from __future__ import annotations
 
+import itertools
 import multiprocessing
 import os
 import signal
+import tempfile
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import dataclass
 from multiprocessing.managers import SyncManager
-from typing import Any
+from pathlib import Path
+from typing import Any, Protocol
 
-from restitution.errors import CaseError, OutputError
+from restitution.errors import CaseError, OutputError, RestitutionError, one_line
 from restitution.results.interruption import hold_signals
-from restitution.sweeps.task import Channel
 
 PATIENCE = "15s"  # timeout of the connection to a Dask scheduler
+
+
+class Channel(Protocol):
+    """A channel for the messages of a worker about its progress."""
+
+    def put(self, message: tuple[int, int], /) -> object:
+        """Send a message: the number of the case, and the number of depths done."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The outcome of a case: the files of its results folder, and the reason if it failed.
+
+    `reason` is empty if the case is complete. A failed case has only the files that were written
+    before the failure.
+    """
+
+    files: dict[str, bytes]
+    reason: str
 
 
 @dataclass(frozen=True)
@@ -166,3 +187,38 @@ def cluster_workers(address: str) -> Iterator[Workers]:
         # limited number of times).
         executor = client.get_executor(pure=False)
         yield Workers(executor, places, 1, queue, heard, lambda _: executor)
+
+
+def compute(text: str, folder: str, number: int, threads: int, channel: Channel) -> Outcome:
+    """Run the case file `text` in this process; paths in it are relative to `folder`.
+
+    Results are returned, not written to the folder of the study. So workers need no shared disk,
+    and only the main process writes to the folder of the study.
+    """
+    # DUCC0 reads this variable only once per process, before its first transform.
+    os.environ.setdefault("DUCC0_NUM_THREADS", str(threads))
+    from restitution.case.case_file import parse_case
+    from restitution.results.writer import ResultsFolder
+    from restitution.runs.ensemble import run_realisations
+
+    depths, reason = itertools.count(1), ""
+
+    def progress(_: str) -> None:
+        channel.put((number, next(depths)))
+
+    with tempfile.TemporaryDirectory(prefix="restitution-") as temporary:
+        out = Path(temporary) / "case"
+        try:
+            run_realisations(parse_case(text), text, Path(folder), ResultsFolder(out), progress)
+        except OutputError:
+            raise
+        except RestitutionError as error:
+            reason = one_line(str(error))
+        except MemoryError:
+            reason = "the memory is too small for this case; use fewer grid.nodes"
+        files = {
+            path.relative_to(out).as_posix(): path.read_bytes()
+            for path in sorted(out.rglob("*"))
+            if path.is_file()
+        }
+    return Outcome(files, reason)

@@ -10,10 +10,9 @@ from pathlib import Path
 
 from restitution.errors import OutputError, one_line
 from restitution.results.interruption import hold_signals
-from restitution.sweeps.executors import Workers
+from restitution.sweeps.executors import Outcome, Workers, compute
 from restitution.sweeps.study_folder import StudyFolder
 from restitution.sweeps.sweep import Study, SweptCase
-from restitution.sweeps.task import Outcome, compute
 
 _POLL = 0.2  # time between updates of the progress (s)
 _DEATHS = 3  # a case has failed if its worker died this many times

@@ -31,9 +31,8 @@ from restitution.results.writer import (
     write_table,
     writing,
 )
-from restitution.sweeps.coordinates import as_text, coordinate
-from restitution.sweeps.sweep import Study, SweptCase
-from restitution.sweeps.task import Outcome
+from restitution.sweeps.executors import Outcome
+from restitution.sweeps.sweep import Study, SweptCase, as_text, coordinate
 
 FAILED, STUDY_FILE = "failed.json", "study.toml"
 

@@ -11,11 +11,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from restitution.dem.export_common import STEPS, Export, number
-from restitution.dem.friction import friction_note
-from restitution.dem.pair import FRICTION, Pair
+from restitution.dem.export_common import SCRIPT, STEPS, Export, number
+from restitution.dem.pair import FRICTION, ExportedPair
 from restitution.dem.pair_table import PairTable
-from restitution.dem.velocity_matching import SCRIPT, matching_script
 
 CODE = "LIGGGHTS"
 LOWEST = 0.0501  # LIGGGHTS stops with "0.05 < coefficientRestitution <= 1 required"
@@ -57,9 +55,9 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
             friction=_by_types(
                 table, pairs, lambda p: number(p.friction), number(FRICTION), number(FRICTION)
             ),
-            friction_note=friction_note(pairs, "#", _TANGENTIAL),
+            friction_note=export.friction_note("#", _TANGENTIAL),
         ),
-        SCRIPT: matching_script(export, "liggghts -in my.in", FRAGMENT, "matched.liggghts"),
+        SCRIPT: export.matching_script("liggghts -in my.in", FRAGMENT, "matched.liggghts"),
         COLLISION: export.render(
             COLLISION,
             unset=unset,
@@ -82,7 +80,11 @@ def _hardness(table: PairTable) -> str:
 
 
 def _by_types(
-    table: PairTable, pairs: list[Pair], entry: Callable[[Pair], str], walls: str, spheres: str
+    table: PairTable,
+    pairs: list[ExportedPair],
+    entry: Callable[[ExportedPair], str],
+    walls: str,
+    spheres: str,
 ) -> list[list[str]]:
     """Return a symmetric matrix with a row and a column for each type.
 

@@ -11,7 +11,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from restitution.dem.export_common import Export, number
-from restitution.dem.friction import friction_note
 from restitution.dem.pair import FRICTION, shear_modulus
 from restitution.dem.pair_table import PairTable
 
@@ -49,7 +48,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
         FILE: export.render(
             FILE,
             "//",
-            friction_note=friction_note(export.pairs, "//"),
+            friction_note=export.friction_note("//"),
             placeholder=FRICTION,
             unset=unset,
             alike=[pair for pair in values if pair.i == pair.j],

@@ -27,8 +27,7 @@ from dataclasses import dataclass
 
 from restitution.dem.damping import dashpot_ratio
 from restitution.dem.export_common import Export
-from restitution.dem.friction import friction_note
-from restitution.dem.pair import Pair
+from restitution.dem.pair import ExportedPair
 from restitution.dem.pair_table import PairTable
 
 CODE = "MuJoCo"
@@ -51,7 +50,7 @@ _COARSE = 50  # number of time steps in a softened contact
 
 
 @dataclass(frozen=True)
-class Contact:
+class DashpotContact:
     """Durations (s) and damping ratio (dimensionless) of a contact between two bodies.
 
     `duration` is that of an elastic Hertz contact, or longer if the acceleration would otherwise
@@ -60,7 +59,7 @@ class Contact:
     of the smaller radius. `ratio` is the damping ratio ζ.
     """
 
-    pair: Pair
+    pair: ExportedPair
     duration: float
     soft_duration: float
     ratio: float
@@ -87,7 +86,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
             contacts=contacts,
             share=_DEEPEST,
             coarse=_COARSE,
-            friction_note=friction_note(export.pairs),
+            friction_note=export.friction_note(),
         ),
         COLLISION: export.render(
             COLLISION,
@@ -97,8 +96,8 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
     } | export.notes()
 
 
-def _contact(pair: Pair) -> Contact:
+def _contact(pair: ExportedPair) -> DashpotContact:
     duration = max(pair.contact_time, math.pi * pair.velocity / _LARGEST)
     radius = min(body.radius for body in (pair.first, pair.second) if body.radius is not None)
     soft = max(duration, math.pi * _DEEPEST * radius / pair.velocity)
-    return Contact(pair, duration, soft, dashpot_ratio(pair.restitution))
+    return DashpotContact(pair, duration, soft, dashpot_ratio(pair.restitution))

@@ -22,11 +22,9 @@ from __future__ import annotations
 
 from functools import partial
 
-from restitution.dem.export_common import Export, density_of
-from restitution.dem.friction import STIFFNESS_SHARE, friction_note
-from restitution.dem.pair import FRICTION, Pair, contact_time
+from restitution.dem.export_common import Export, density_of, law_points
+from restitution.dem.pair import FRICTION, STIFFNESS_SHARE, ExportedPair, contact_time
 from restitution.dem.pair_table import PairTable
-from restitution.dem.velocity_matching import law_points
 from restitution.laws.particle import Particle
 
 CODE = "YADE"
@@ -69,7 +67,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
             wall_density=_WALL_DENSITY,
             density=_density,
             points=partial(law_points, lowest=LOWEST),
-            friction_note=friction_note(export.pairs, "#", _TANGENTIAL),
+            friction_note=export.friction_note("#", _TANGENTIAL),
             tangential=_tangential,
         ),
         COLLISION: export.render(
@@ -80,7 +78,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
     } | export.notes()
 
 
-def _tangential(pair: Pair) -> float:
+def _tangential(pair: ExportedPair) -> float:
     """The factor (dimensionless) by which the tangential stiffness of YADE is multiplied."""
     return 1.0 if pair.law.friction is None else STIFFNESS_SHARE
 
@@ -90,7 +88,7 @@ def _density(body: Particle) -> float:
     return _WALL_DENSITY if body.wall and body.density is None else density_of(body)
 
 
-def _contact_time(pair: Pair) -> float:
+def _contact_time(pair: ExportedPair) -> float:
     """Contact time (s) of an elastic impact at 1 m/s.
 
     On a wall, half the radius of the sphere replaces the reduced radius R*, as in YADE.
