@@ -20,13 +20,9 @@ from restitution.theory import Persson
 class AreaTheory:
     """Relative contact area at nominal pressures `pressure` (Pa), shape (depths,).
 
-    Attributes:
-        title: Title of the case.
-        theory: Persson's theory for the bodies and the rms slope of the surface.
-        pressure: Nominal pressures (Pa), positive.
-        computed: Computed area, corrected for the staircase edge; NaN if it is not computed.
-        stiffness: Computed stiffness (Pa/m); NaN if unknown.
-        left_out: What the bodies do and the theory leaves out, in words; may be empty.
+    `theory` has the rms slope of the surface. `computed` is the area corrected for the staircase
+    edge and `stiffness` in Pa/m; NaN where not computed. `left_out` says what the bodies do and the
+    theory does not.
     """
 
     title: str
@@ -60,7 +56,7 @@ class AreaTheory:
 
 
 def area_of_case(case: Case, folder: Path) -> AreaTheory:
-    """Evaluate the theory at the nominal pressures of a periodic case; files are in `folder`.
+    """The theory at the nominal pressures of a periodic case, with files in `folder`.
 
     Raises `CaseError` if the case prescribes indentations, whose pressures only a run tells.
     """
@@ -80,7 +76,7 @@ def area_of_case(case: Case, folder: Path) -> AreaTheory:
 
 
 def area_of_results(results: PeriodicResults) -> AreaTheory:
-    """Evaluate the theory at the nominal pressures of stored results. Raises `OutputError`."""
+    """The theory at the nominal pressures of stored results. Raises `OutputError`."""
     data, summary = results.dataset, results.summary
     data = data.isel(depth=data["nominal_pressure"].values > 0)
     p = data["nominal_pressure"].values

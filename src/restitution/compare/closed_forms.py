@@ -1,15 +1,8 @@
-"""Published closed forms for the smooth bodies of a case, each within its range of validity.
+"""Published closed forms for the smooth bodies of a case; NaN outside their range of validity.
 
-The modules of `restitution.theory` state the ranges. Outside the range of a theory, this module
-returns NaN, even if the formula gives a number. No theory includes roughness.
-
-Each theory uses one of three quantities to describe yielding. The elastic theories (`hertz`,
-`sticking`) are valid at most up to the pressure of first yield (`onset`). Thornton–Ning uses p_y,
-the pressure of a fully plastic contact. The other theories use the yield strength Y of a tensile
-test. If both bodies have a `yield_strength` and the interface has none, Y is the smaller of the two
-strengths. Otherwise, Y = p_y/2.8.
-
-All units are SI. Arrays of velocities and of the coefficient of restitution e have the same shape.
+`hertz` and `sticking` hold up to the pressure of first yield (`onset`). Thornton–Ning uses p_y, the
+pressure of a fully plastic contact; the others use the yield strength Y of a tensile test: the
+smaller of the two bodies, or p_y/2.8 if one has none or the interface overrides them. SI units.
 """
 
 from __future__ import annotations
@@ -55,10 +48,9 @@ SOURCES = {
 
 @dataclass(frozen=True)
 class Bodies:
-    """The smooth bodies of a case: the arguments of the theories, in SI units.
+    """The smooth bodies of a case, in SI units.
 
-    `R`, `E` and `m` are the reduced radius R*, the contact modulus E* and the reduced mass m*. `w`
-    is the work of adhesion.
+    `R`, `E` and `m` are R*, E* and m*, and `w` is the work of adhesion.
     """
 
     R: float
@@ -77,7 +69,7 @@ class Bodies:
 
     @classmethod
     def of(cls, case: Case) -> Bodies:
-        """Return the smooth bodies of `case`. Raises `CaseError` if a density is missing."""
+        """The smooth bodies of `case`. Raises `CaseError` if a density is missing."""
         pair = case.pair()
         for name, body in (("first", pair.first), ("second", pair.second)):
             if body.mass is None:
@@ -109,34 +101,34 @@ class Bodies:
 
     @property
     def hertz(self) -> Hertz:
-        """Elastic contact of the bodies, without adhesion (Hertz)."""
+        """Elastic contact without adhesion."""
         return Hertz(self.R, self.E)
 
     @property
     def yielding(self) -> ThorntonNing:
-        """Elastic-plastic contact of the bodies, without adhesion (Thornton and Ning)."""
+        """Elastic-plastic contact without adhesion."""
         return ThorntonNing(self.R, self.E, self.p_y)
 
     @property
     def sticking(self) -> JKR:
-        """Elastic contact of the bodies, with adhesion (JKR)."""
+        """Elastic contact with adhesion."""
         return JKR(self.R, self.E, self.w)
 
     @property
     def elastic(self) -> bool:
-        """Whether the bodies are purely elastic."""
+        """Whether nothing yields."""
         return math.isinf(self.p_y)
 
     @cached_property
     def yield_velocity(self) -> float:
-        """Yield velocity V_y (m/s), above which the bodies yield somewhere; infinite if elastic."""
+        """V_y (m/s), above which the bodies yield somewhere; infinite if elastic."""
         if self.elastic:
             return math.inf
         return float(FirstYield(self.R, self.E, self.onset).velocity(self.m))
 
     @cached_property
     def sticking_velocity(self) -> float:
-        """Impact velocity V_s (m/s) up to which elastic bodies stick; zero without adhesion."""
+        """V_s (m/s), up to which elastic bodies stick; zero without adhesion."""
         return 0.0 if self.w == 0 else float(self.sticking.sticking_velocity(self.m))
 
     @cached_property
@@ -151,7 +143,7 @@ class Bodies:
 
     @property
     def convention(self) -> str:
-        """State the value of `strength` and its origin, in words."""
+        """`strength` and its origin, in words."""
         if self.strengths is None:
             return f"Y = p_y/{STRENGTHS:g} = {1e-6 * self.strength:.4g} MPa"
         softer = self.labels[self.strengths.index(self.strength)]
@@ -159,26 +151,17 @@ class Bodies:
 
     @property
     def yielding_wall(self) -> bool | None:
-        """Whether the wall has a smaller yield strength than the sphere.
-
-        None if the case has no wall, if `strengths` is None, or if both strengths are equal.
-        """
+        """Whether the wall is softer than the sphere; None if that is unknown or neither."""
         if self.wall is None or self.strengths is None or self.strengths[0] == self.strengths[1]:
             return None
         return self.strengths[self.wall] == self.strength
 
     def velocity(self, indentation: Array) -> Array:
-        """Impact velocity (m/s) at which the maximum indentation is `indentation` (m).
-
-        The velocity follows from Thornton and Ning or, for elastic bodies, from Hertz.
-        """
+        """Impact velocity (m/s) at which the maximum indentation is `indentation` (m)."""
         return (self.hertz if self.elastic else self.yielding).impact_velocity(indentation, self.m)
 
     def depth_under(self, force: Array) -> Array:
-        """Indentation (m) under `force` (N).
-
-        The indentation follows from Thornton and Ning or, for elastic bodies, from Hertz.
-        """
+        """Indentation (m) under `force` (N)."""
         return (self.hertz if self.elastic else self.yielding).indentation(force)
 
 
@@ -186,9 +169,8 @@ class Bodies:
 class Form:
     """The result of one closed form.
 
-    `restitution` is e at the impact velocities, and `holds` describes the range of validity in
-    words. `takes_strength` says whether the form uses the yield strength Y, and `with_adhesion`
-    says whether it includes adhesion.
+    `restitution` is e at the impact velocities, and `holds` its range of validity in words.
+    `takes_strength` says whether it uses Y, and `with_adhesion` whether it includes adhesion.
     """
 
     restitution: Array
@@ -316,7 +298,7 @@ def _tabor(b: Bodies) -> str:
 
 
 def within(inside: NDArray[np.bool_], e: Array) -> Array:
-    """Return `e` where the mask `inside` is true, and NaN elsewhere."""
+    """`e` where the mask `inside` is true, and NaN elsewhere."""
     return np.where(inside, e, np.nan)
 
 

@@ -30,21 +30,22 @@ class Reference:
 def force_references(results: xr.Dataset) -> list[Reference]:
     """Closed forms of the force (N) against indentation (m): elastic and, if bodies yield, plastic.
 
-    The curves begin below the smallest indentation for which the run contains a force, whether on
-    loading or on unloading.
+    They begin below the smallest indentation with a force.
     """
     R, E_star, p_y, w = _parameters(results)
     deepest = float(results["indentation"].max())
     indentation = np.geomspace(0.7 * least_indentation(results), deepest, 400)
-    found = [Reference("Hertz, smooth", indentation, Hertz(R, E_star).force(indentation), False)]
+    references = [
+        Reference("Hertz, smooth", indentation, Hertz(R, E_star).force(indentation), False)
+    ]
     if w > 0:
         jkr = JKR(R, E_star, w)
         reach = np.append(np.linspace(float(jkr.break_indentation), 0, 60), indentation)
-        found = [Reference(_JKR, reach, jkr.force(reach), False)]
+        references = [Reference(_JKR, reach, jkr.force(reach), False)]
     if np.isfinite(p_y):
         force = ThorntonNing(R, E_star, p_y).loading_force(indentation)
-        found.append(Reference(_THORNTON_NING, indentation, force, True))
-    return found
+        references.append(Reference(_THORNTON_NING, indentation, force, True))
+    return references
 
 
 def restitution_references_by_indentation(results: xr.Dataset) -> list[Reference]:
@@ -81,16 +82,16 @@ def restitution_references_by_velocity(results: xr.Dataset) -> list[Reference]:
 
 def least_indentation(results: xr.Dataset) -> float:
     """The smallest positive indentation (m) with a stored force, on loading or on unloading."""
-    found = [float(results["indentation"].min())]
+    least = [float(results["indentation"].min())]
     for k in range(results.sizes.get("unloading", 0)):
         force = results["unloading_force"][k].values
         depths = results["unloading_indentation"][k].values[force > 0]
-        found.append(float(min(depths[depths > 0], default=math.inf)))
-    return min(found)
+        least.append(float(min(depths[depths > 0], default=math.inf)))
+    return min(least)
 
 
 def _parameters(results: xr.Dataset) -> tuple[float, float, float, float]:
-    """Return R* (m), E* (Pa), yield pressure (Pa; inf if elastic), work of adhesion (J/m²)."""
+    """R* (m), E* (Pa), yield pressure (Pa; inf if elastic), work of adhesion (J/m²)."""
     p_y = results.attrs["derived_yield_pressure_Pa"]
     return (
         float(results.attrs["derived_reduced_radius_m"]),

@@ -28,10 +28,9 @@ _FITTED = ("constant", "walton-braun", "luding", "eepa")  # theories with fitted
 
 @dataclass(frozen=True)
 class Theory:
-    """COR of one theory at some velocities.
+    """COR of one theory at some velocities; NaN outside the range that `holds` describes.
 
-    `holds` describes the range of the theory, and `restitution` is NaN outside this range. The keys
-    of `parameters` end with the units.
+    The keys of `parameters` end with the units.
     """
 
     name: str
@@ -42,11 +41,10 @@ class Theory:
 
 
 def velocities_of(case: Case, law: Law | None = None) -> Array:
-    """Velocities (m/s) at which theories are evaluated: those of `law`, or a range from the case.
+    """Velocities (m/s) of `law`, or from the first to the last depth of `case`.
 
-    If the case gives indentations or loads, the first and the last of them are converted to the
-    impact velocities of smooth bodies. The conversion uses the theory of Thornton and Ning or, for
-    elastic bodies, of Hertz. Raises `CaseError`.
+    Indentations and loads are converted for smooth bodies (Thornton and Ning, or Hertz). Raises
+    `CaseError`.
     """
     if law is not None:
         return law.column("velocity")
@@ -58,48 +56,54 @@ def velocities_of(case: Case, law: Law | None = None) -> Array:
 
 
 def theories(case: Case, velocities: Array, law: Law | None = None) -> list[Theory]:
-    """Evaluate every theory that applies to `case`, and the fits to `law`, at `velocities` (m/s).
+    """Every theory that applies to `case`, and the fits to `law`, at `velocities` (m/s).
 
-    The computed COR and the fits have values only at the velocities of the law, and are NaN at
-    other velocities. The fits are also NaN outside `law.fitted_range`. Raises `CaseError` if a
-    density is missing, or if the law belongs to another pair.
+    The computed COR and the fits have values only at the velocities of the law, and fits only in
+    `law.fitted_range`. Raises `CaseError` if a density is missing, or if the law is of another
+    pair.
     """
     V = np.asarray(velocities, dtype=float)
-    found = [answer for answer in _answers(case, V) if isinstance(answer, Theory)]
+    evaluated = [answer for answer in _answers(case, V) if isinstance(answer, Theory)]
     if law is not None:
         check_same_pair(case, law)
-        found += _of_law(Bodies.of(case), law, V)
-    return found
+        evaluated += _of_law(Bodies.of(case), law, V)
+    return evaluated
 
 
 def theory_lines(
-    case: Case, velocities: Array, found: list[Theory]
+    case: Case, velocities: Array, evaluated: list[Theory]
 ) -> list[tuple[str, bool, Array, Array]]:
-    """Return a line of a figure for each theory in `found`.
+    """A line of a figure for each theory: name, whether it is a fit, velocities (m/s) and COR.
 
-    The computed COR in `found` gets no line. A line consists of the name, a flag (true for a fit),
-    velocities (m/s) and COR. Closed forms are evaluated at many velocities between the first and
-    the last of `velocities`, and fits only at `velocities`.
+    Closed forms are evaluated at many velocities, fits at `velocities`; the computed COR gets no
+    line.
     """
     V = velocities
     if velocities.size > 1:
         V = np.geomspace(velocities[0], velocities[-1], _FINE)
-    closed = {each.name: (V, each.restitution) for each in theories(case, V)}
+    closed = {theory.name: (V, theory.restitution) for theory in theories(case, V)}
     return [
-        (each.name, each.name not in FORMS, *closed.get(each.name, (velocities, each.restitution)))
-        for each in found
-        if each.name != COMPUTED
+        (
+            theory.name,
+            theory.name not in FORMS,
+            *closed.get(theory.name, (velocities, theory.restitution)),
+        )
+        for theory in evaluated
+        if theory.name != COMPUTED
     ]
 
 
-def write_theories(velocities: Array, found: list[Theory], out: Path) -> Path:
-    """Write `theory.csv` into `out`, which must be new or empty. Raises `OutputError`.
+def write_theories(velocities: Array, evaluated: list[Theory], out: Path) -> Path:
+    """Write COR of each theory at `velocities` (m/s) as `theory.csv` into `out`, new or empty.
 
-    `found` contains the COR of each theory at `velocities` (m/s).
+    Raises `OutputError`.
     """
     make_folder(out)
     rows = [
-        {"velocity_m_per_s": float(V), **{each.name: float(each.restitution[k]) for each in found}}
+        {
+            "velocity_m_per_s": float(V),
+            **{theory.name: float(theory.restitution[k]) for theory in evaluated},
+        }
         for k, V in enumerate(velocities)
     ]
     write_table(out / "theory.csv", rows)
@@ -117,13 +121,10 @@ def left_out(case: Case, law: Law | None = None) -> dict[str, str]:
 
 
 def marks(case: Case) -> dict[str, float]:
-    """Velocities (m/s) above which smooth bodies yield (V_y), and up to which they stick (V_s).
-
-    V_y is left out for elastic bodies, and V_s without adhesion.
-    """
+    """V_y and V_s (m/s) of the smooth bodies, without V_y if elastic and V_s without adhesion."""
     bodies = Bodies.of(case)
-    found = {"V_y": bodies.yield_velocity, "V_s": bodies.sticking_velocity}
-    return {name: value for name, value in found.items() if 0 < value < math.inf}
+    velocities = {"V_y": bodies.yield_velocity, "V_s": bodies.sticking_velocity}
+    return {name: value for name, value in velocities.items() if 0 < value < math.inf}
 
 
 def check_same_pair(case: Case, law: Law) -> None:
@@ -147,7 +148,6 @@ def check_same_pair(case: Case, law: Law) -> None:
 
 
 def _answers(case: Case, V: Array) -> Iterator[Theory | tuple[str, str]]:
-    """Yield each closed form at V (m/s), or its name and the reason why it does not apply."""
     bodies = Bodies.of(case)
     for name, form in FORMS.items():
         answer = form(bodies, V)
@@ -164,7 +164,6 @@ def _answers(case: Case, V: Array) -> Iterator[Theory | tuple[str, str]]:
 
 
 def _of_law(bodies: Bodies, law: Law, V: Array) -> Iterator[Theory]:
-    """Yield the computed points, and the theories whose parameters are fitted to these points."""
     own = law.column("velocity")
     equal = np.isclose(V[:, np.newaxis], own, rtol=1e-9, atol=0.0)
     at, here = equal.argmax(axis=1), np.asarray(equal.any(axis=1))
@@ -188,14 +187,14 @@ def _of_law(bodies: Bodies, law: Law, V: Array) -> Iterator[Theory]:
     )
     low, high = law.fitted_range or (math.nan, math.nan)
     span = f"fitted to the computed e from {low:.3g} to {speed(high)}, and empty outside"
-    for each in law.laws:
-        if each.name in _FITTED:
+    for fit in law.laws:
+        if fit.name in _FITTED:
             yield Theory(
-                each.name,
-                each.source,
-                f"{span}, {_judged(each)}",
-                each.parameters,
-                fitted(np.array(each.restitution, dtype=float)),  # None becomes NaN
+                fit.name,
+                fit.source,
+                f"{span}, {_judged(fit)}",
+                fit.parameters,
+                fitted(np.array(fit.restitution, dtype=float)),  # None becomes NaN
             )
     if not _cannot_fit(law):
         beta = _dissipation(law)
@@ -217,11 +216,6 @@ def _unresolved(law: Law) -> str:
 
 
 def _other_interface(bodies: Bodies, law: Law) -> str:
-    """State the yield pressure and the work of adhesion of `law` if they differ from the case.
-
-    `bodies` are the bodies of the case. Only values that differ are stated. The result is empty if
-    both values agree.
-    """
     differing = []
     p_y = math.inf if law.yield_pressure is None else law.yield_pressure
     if not math.isclose(p_y, bodies.p_y, rel_tol=_SAME):
@@ -233,9 +227,9 @@ def _other_interface(bodies: Bodies, law: Law) -> str:
     )
 
 
-def _judged(each: FittedLaw) -> str:
-    note = f"; {each.note}" if each.note else ""
-    return f"rms {each.rms:.2g}, worst {each.worst:.2g}; ends: {each.ends}{note}"
+def _judged(fit: FittedLaw) -> str:
+    note = f"; {fit.note}" if fit.note else ""
+    return f"rms {fit.rms:.2g}, worst {fit.worst:.2g}; ends: {fit.ends}{note}"
 
 
 def _cannot_fit(law: Law) -> str:
@@ -251,7 +245,6 @@ def _cannot_fit(law: Law) -> str:
 
 
 def _dissipation(law: Law) -> float:
-    """Fit the dissipation β of `Brilliantov` to the COR of the law by least squares."""
     from scipy.optimize import minimize_scalar
 
     V, e = (law.column(name, resolved=True) for name in ("velocity", "restitution"))

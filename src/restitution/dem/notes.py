@@ -27,10 +27,7 @@ _MOST = 20  # largest number of pairs that are listed after a warning
 
 
 def grouped_warnings(pairs: Sequence[ExportedPair]) -> list[str]:
-    """Write each warning once, with the pairs for which it holds.
-
-    Warnings that differ only in numbers count as one.
-    """
+    """Each warning once, with its pairs; warnings that differ only in numbers count as one."""
     groups: dict[str, list[tuple[ExportedPair, str]]] = {}
     for pair in pairs:
         for text in dict.fromkeys(_warnings(pair)):
@@ -39,10 +36,7 @@ def grouped_warnings(pairs: Sequence[ExportedPair]) -> list[str]:
 
 
 def numbers(pairs: Sequence[ExportedPair], count: int = 0) -> str:
-    """List the type numbers of `pairs`: "pair 1 1", or "pairs 1 1, 1 2".
-
-    If there are several pairs and they are all pairs of the export (`count`), say so.
-    """
+    """The type numbers of `pairs`: "pairs 1 1, 1 2", or "all pairs" if they are `count`."""
     if 1 < len(pairs) == count:
         return "all pairs"
     listed = [f"{pair.i} {pair.j}" for pair in pairs[:_MOST]]
@@ -51,7 +45,7 @@ def numbers(pairs: Sequence[ExportedPair], count: int = 0) -> str:
 
 
 def about(pairs: Sequence[ExportedPair], code: str) -> list[str]:
-    """Describe the law of each pair. Lines that are the same for all pairs are written once."""
+    """The law of each pair; lines that are the same for all pairs are written once."""
     described = [_about(pair, code) for pair in pairs]
     common = [line for line in described[0] if all(line in lines for lines in described)]
     several = len(pairs) > 1
@@ -106,7 +100,6 @@ def _about(pair: ExportedPair, code: str) -> list[str]:
 
 
 def _elsewhere(law: Law, velocity: float) -> str:
-    """State e at half and at twice `velocity` (m/s), if the law includes these velocities."""
     said = []
     for V in (velocity / 2, velocity * 2):
         with suppress(DomainError):
@@ -115,7 +108,6 @@ def _elsewhere(law: Law, velocity: float) -> str:
 
 
 def _adhesion(law: Law, velocity: float, code: str) -> list[str]:
-    """Make comment lines about adhesion for the export of `law` to `code`; [] without adhesion."""
     if law.work_of_adhesion == 0:
         return []
     force = pull_off_force(law, velocity)

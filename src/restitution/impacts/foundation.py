@@ -1,26 +1,11 @@
 """A row of springs (a foundation) that replaces a contact whose force curves are stored.
 
-Springs stand side by side on a line that is symmetric about its middle. The two springs at the
-distance x from the middle count as one spring here. This spring touches when the indentation
-reaches g(x). At the indentation δ, its normal load per unit length is 2E* (δ − g), where E* is the
-contact modulus. With the tangential displacement u and the tangential modulus G*, its tangential
-load per unit length is 2G* u. The function g follows from the normal force F(δ) alone: the inverse
-of g(x) is the contact radius a(δ) = F′(δ)/2E*. A sticking spring is displaced with the bodies. The
-tangential load |2G* u| is at most µ times the normal load, where µ is the coefficient of friction.
-
-For a sphere, g = x²/R*, and the foundation is exact: it gives Hertz's force, and Cattaneo's and
-Mindlin's tangential force for every history (Popov and Heß 2015, Method of Dimensionality
-Reduction, chapters 3 and 5). For other elastic contacts, the tangential force of the foundation
-is a good approximation. If the bodies are first pressed together and then displaced tangentially,
-this force is µ [F(δ) − F(δ_s)]. Here δ_s < δ is the indentation at which the contact area equals
-the present sticking area (Jäger 1995, Arch. Appl. Mech. 65, 478–487; Ciavarella 1998, Int. J.
-Solids Struct. 35, 2349–2378).
-
-A contact that has yielded responds to small motions elastically, as on its unloading curve. At
-every depth of loading, the normal loads of the springs are therefore computed from the unloading
-curve that starts at this depth. When the depth increases, springs that already touch keep their
-tangential displacement. This extension is not in the cited literature. `tangential_error` estimates
-the error of the tangential force of the foundation.
+A spring at the distance x from the middle touches at the indentation g(x), where g is the inverse
+of the contact radius a(δ) = F′(δ)/2E*. Its normal load per length is 2E* (δ − g), its tangential
+load 2G* u, at most µ times the normal load. For a sphere this is exact (Popov and Heß 2015, Method
+of Dimensionality Reduction, chapters 3 and 5); else it is the approximation of Jäger (1995, Arch.
+Appl. Mech. 65, 478–487) and Ciavarella (1998, Int. J. Solids Struct. 35, 2349–2378). After yield
+the loads follow from the unloading curve that starts at the depth, which is not in this literature.
 """
 
 from __future__ import annotations
@@ -46,10 +31,9 @@ _POINTS = 400  # number of points of an unloading curve at which its slope is co
 class Foundation:
     """The springs that replace a contact, for loading up to `depths[-1]` (m).
 
-    `radius` (m, shape (n,)) holds the distances of the springs from the middle of the line, and
-    `width` (m) is their spacing. `loads` (N/m, shape (depths, n)) holds the normal load per unit
-    length of each spring at each depth of loading. The two springs at the same distance from the
-    middle count as one, so their loads are added. `moduli` are E* and G* (Pa).
+    `radius` (m, shape (n,)) holds the distances of the springs from the middle of the line, `width`
+    (m) their spacing, and `loads` (N/m, shape (depths, n)) their normal loads per length at each
+    depth of loading; the two springs at one distance count as one. `moduli` are E* and G* (Pa).
     """
 
     radius: Array
@@ -60,7 +44,7 @@ class Foundation:
 
     @classmethod
     def of(cls, law: StoredForce, deepest: float) -> Foundation:
-        """Make the foundation of the force `law`, loaded up to `deepest` (m)."""
+        """The foundation of the force `law`, loaded up to `deepest` (m)."""
         E, G = law.pair.contact_modulus, law.pair.tangential_modulus
         depths = np.linspace(0.0, deepest, _DEPTHS + 1)[1:]
         if has_yielded(law, deepest):
@@ -93,10 +77,10 @@ class Foundation:
     ) -> tuple[Array, Array, Array]:
         """Move the bodies tangentially by `motion` (m).
 
-        `u` (m) holds the tangential displacements of the springs, and `limit` (N) their friction
-        limits. `factor` scales the tangential modulus. `motion` and `factor` may be arrays with
-        one value for each row of `u`. Returns the new displacements (m), the tangential force (N),
-        and the work of friction (J).
+        `u` (m) holds the displacements of the springs, `limit` (N) their friction limits, and
+        `factor` scales the tangential modulus; `motion` and `factor` may have a value for each row
+        of `u`. Returns the new displacements (m), the tangential force (N), and the work of
+        friction (J).
         """
         stiffness = 2 * self.moduli[1] * self.width * np.asarray(factor)
         largest = limit / stiffness[..., None]
@@ -112,11 +96,10 @@ def has_yielded(law: StoredForce, deepest: float) -> bool:
 
 
 def _touching(law: StoredForce, depth: float, contact_modulus: float) -> tuple[Array, Array]:
-    """Return indentations (m) on the unloading curve from `depth` (m), and their contact radii (m).
+    """Indentations (m) on the unloading curve from `depth` (m), and their contact radii (m).
 
-    Where the radii would decrease as the indentation grows, they are kept constant. Every spring
-    then touches at one indentation only. Finally, the radii are scaled so that the loads of the
-    springs add up to the force.
+    Radii never decrease with the indentation, so that every spring touches once; they are scaled so
+    that the loads add up to the force.
     """
     end, force = law.separation(depth), law.loading(depth)
     shape, _ = law.shape(depth)

@@ -1,27 +1,12 @@
 """Oblique impact: tangential rebound, spin and friction loss from stored normal forces.
 
-The normal motion does not depend on the tangential motion. It equals the motion in a head-on impact
-at the normal velocity (`time_integration`). The contact point slides with the velocity
+The normal motion is that of a head-on impact at the normal velocity. The contact point slides with
 
     U = v_t − R₁ω₁ − R₂ω₂,   dU/dt = −(7/2) T/m*,   dv_t/dt = −T/m*,   dω_i/dt = (5/2) T/(m_i R_i)
 
-for solid spheres (moment of inertia I = 2/5 m R²) with the radii R_i, the masses m_i and the spins
-ω_i. Here v_t is the relative tangential velocity of the centres, m* the reduced mass and T the
-tangential force. The positive direction of a spin is the direction in which friction would rotate
-a sphere that has no spin yet. T follows from a one-dimensional foundation of springs with constant
-friction µ (`foundation`). If all springs slide throughout the impact, the impulse of T is
-µ (1 + e) m* V_n for every force law. Here V_n is the normal impact velocity and e the normal
-restitution.
-
-The error of the impulse of T is the sum of three parts (`tangential_error` gives their sizes). The
-first part is due to the error of the tangential stiffness. To compute it, the motion is integrated
-again with a larger and a smaller tangential modulus. The second part is due to yield. It decreases
-to zero towards full slip, in which all springs slide. The third part is due to unlike materials,
-and is proportional to the impulse. In full slip, the impulse is exact for bodies of equal
-materials.
-
-Neglected: the coupling of normal and tangential displacements of unlike materials, the torque about
-the normal, rolling friction, and elastic waves.
+for solid spheres; T is the tangential force of a row of springs (`foundation`). Neglected: the
+coupling of normal and tangential displacements of unlike materials, the torque about the normal,
+rolling friction, and elastic waves. docs/oblique.md derives the condition of full slip.
 """
 
 from __future__ import annotations
@@ -218,7 +203,7 @@ def oblique_force(run: RunResults, key: str = "angle") -> StoredForce:
 
 
 def course(collision: ObliqueCollision) -> list[dict[str, float]]:
-    """Convert the time series of a collision to table rows."""
+    """The time series of a collision as table rows."""
     return table_rows(
         {
             "impact_velocity_m_per_s": collision.velocity,
@@ -244,7 +229,8 @@ def full_slip_angle(friction: float, restitution: float, modulus_ratio: float) -
         The angle from the normal (rad).
 
     Source:
-        Maw, Barber and Fawcett (1976) for e = 1. The top of this module derives it for e < 1.
+        Maw, Barber and Fawcett (1976, Wear 38, 101–114) for e = 1: ψ₁ ≥ 4χ − 1. The same derivation
+        holds for e < 1, because springs unload with the stiffness E*.
     """
     least = 3.5 * (1 + restitution) - restitution / modulus_ratio
     # If ψ₁ = (G*/E*) tan θ/µ is below 1, the contact sticks at first (Maw, Barber and Fawcett). So

@@ -1,30 +1,10 @@
-"""Error of the tangential law, from a comparison with boundary elements.
+"""Error of the tangential law (`foundation`), from a comparison with boundary elements.
 
-The tangential law is the tangential force of a row of springs (`foundation`). docs/oblique.md
-describes the comparison (`evidence/tangential` and `evidence/unlike`). For bodies of equal
-materials with Poisson's ratio 0, the law is exact with any roughness, as long as the bodies do not
-yield. Four effects cause an error:
-
-* Contact patches that are not round. A point load along x displaces the points of a circle around
-  the load by different amounts. On the x axis, the displacement is 1 + χ times its mean over the
-  circle. On the y axis, the displacement is 1 − χ times this mean. For equal materials with
-  Poisson's ratio ν, χ = ν/(2 − ν). The law uses the mean, so its stiffness has an error of up to χ
-  for a line contact. The patches of a rough contact are elongated in random directions, so the
-  error is inversely proportional to the square root of the number of patches. On a surface with a
-  lay (a preferred direction) the patches are aligned, and the error decreases less.
-* Yield. At nodes that have reached the pressure bound, the friction limit stays constant during
-  further loading. In the law, the friction limits of all springs increase.
-* Few unloading curves. Between two unloading curves, the stiffness is interpolated.
-* Unlike materials. Pressure also moves the surfaces tangentially, in proportion to Dundurs' second
-  constant β. Without slip this motion adds no tangential force, by symmetry. The stiffness then
-  grows only by about β²/3 (atanh(β)/β − 1 for a round punch; Spence 1968, Proc. R. Soc. A 305,
-  55–80). But if the coefficient of friction µ is not large compared with |β|, the surfaces slip
-  radially under pressure alone (Spence 1975, J. Elast. 5, 297–319). Friction that opposes this
-  radial slip cannot also resist a tangential motion. The impulse of the law was compared with
-  solutions that include the radial slip. The difference was converted to the relative error of the
-  stiffness that would change the impulse equally. This error is less than |β| if µ < |β|. For
-  µ > |β|, it is less than the larger of |β|³/µ² and β²/3. In full slip, the radial slip turns the
-  friction away from the direction of motion, so the true impulse is smaller than that of the law.
+docs/oblique.md describes the comparison (evidence/tangential, evidence/unlike). The law is exact
+for bodies of equal materials with ν = 0 that do not yield. Errors come from patches that are not
+round (a point load displaces the points of a circle by 1 ± χ times their mean, χ = ν/(2 − ν)), from
+yield, from few unloading curves, and from unlike materials (Dundurs' β): the surfaces slip radially
+under pressure alone (Spence 1968, Proc. R. Soc. A 305, 55–80, and 1975, J. Elast. 5, 297–319).
 """
 
 from __future__ import annotations
@@ -63,9 +43,9 @@ _SHALLOWEST = 0.2
 class TangentialError:
     """Relative errors of the tangential law (dimensionless).
 
-    `stiffness` is the error of the tangential stiffness. `impulse` and `sliding` are additional
-    errors of the tangential impulse. The error `impulse` decreases to zero towards full slip. The
-    error `sliding` also remains in full slip.
+    `stiffness` is that of the tangential stiffness. `impulse` and `sliding` are additional errors
+    of the tangential impulse; `impulse` decreases to zero towards full slip, and `sliding` does
+    not.
     """
 
     stiffness: float
@@ -76,8 +56,7 @@ class TangentialError:
 def tangential_error(law: StoredForce, deepest: float, friction: float) -> TangentialError:
     """Error of the tangential law for an impact with the maximum indentation `deepest` (m).
 
-    `friction` is the coefficient of friction (dimensionless). The result does not include the
-    errors of the grid and of the normal forces.
+    The errors of the grid and of the normal forces are not included.
     """
     beta = abs(dundurs(law.pair))
     slipping = min(beta / friction, 1.0) ** 2 if friction > 0 else 1.0
@@ -110,11 +89,7 @@ def dundurs(pair: Pair) -> float:
 
 
 def _largest_gap(law: StoredForce, deepest: float) -> float:
-    """Largest ratio of the depths at which two neighbouring unloading curves begin.
-
-    Only the curves needed for an impact with the maximum indentation `deepest` (m) are compared.
-    The last of them is the first curve that begins at `deepest` or deeper.
-    """
+    """Largest ratio of the depths of two neighbouring unloading curves that the impact uses."""
     depths = law.unloading_from
     if depths[0] > _SHALLOWEST * deepest:
         depths = np.append(_SHALLOWEST * deepest, depths)

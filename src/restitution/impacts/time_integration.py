@@ -2,21 +2,11 @@
 
     m₁ x₁'' = −F(δ),  m₂ x₂'' = F(δ),  δ = x₁ − x₂ (0 at first touch),  e = (v₂' − v₁')/(v₁ − v₂)
 
-x'' is an acceleration; v and v' are the velocities before and after the impact. F follows the
-loading curve until the particles stop approaching. Then F follows the unloading curve from the
-largest indentation. The resulting e is an independent check of e = (W_u/W)^½, which a run computes
-from the unloading work W_u and the loading work W. The time integration uses the unloading forces
-instead of W_u, and the equations of motion instead of the energy balance.
-
-The loading force is the derivative of a cubic Hermite spline through the stored loading work W. At
-the stored depths, the slope of the spline is the stored force. The particles therefore stop
-approaching where W equals the initial kinetic energy, as the energy balance requires. If W
-increases about as a power of δ, the spline interpolates ln W against ln δ.
-
-Unloading curves are monotone cubics (PCHIP) and are stored for some depths only. Unloading from a
-depth δ_max between two of these depths uses an interpolation between their curves. The interpolated
-quantity is F/F_max as a function of (δ − δ_s)/(δ_max − δ_s). Here F_max is the loading force at
-δ_max, and δ_s is the indentation at separation.
+F is the loading curve until the particles stop, then the unloading curve. e checks (W_u/W)^½ of a
+run independently: it needs the unloading forces and the equations of motion, not W_u. The loading
+force is the derivative of a cubic Hermite spline through the loading work W, so the particles stop
+where W is their energy. Unloading curves (PCHIP) are interpolated between the stored depths as
+F/F_max against (δ − δ_s)/(δ_max − δ_s), with the indentation δ_s at separation.
 """
 
 from __future__ import annotations
@@ -76,11 +66,10 @@ class ReferenceCollision:
 
 @dataclass(frozen=True, eq=False)
 class StoredRoughness:
-    """Properties of the roughness of a stored contact.
+    """Roughness of a stored contact.
 
-    `patches` holds the number of contact patches at each of the indentations `depths` (m). `lay` is
-    the anisotropy of the slopes: 0 if the slopes are equal in all directions, 1 if all slopes are
-    along one axis.
+    `patches` is the number of contact patches at the indentations `depths` (m). `lay` is the
+    anisotropy of the slopes: 0 if equal in all directions, 1 if all are along one axis.
     """
 
     depths: Array
@@ -93,11 +82,10 @@ class StoredForce:
     """The stored force law of one pair: loading, and unloading from some depths.
 
     `deepest` is the largest indentation (m) with a stored force, and `highest` the impact velocity
-    (m/s) that reaches it. The function `loading` maps indentation (m) to force (N). The function
-    `separation` maps the maximum indentation (m) to the indentation at separation (m).
-    `unloading_from` contains the depths (m, increasing) from which unloading is stored. For each of
-    them, `unloading` contains one curve: increasing indentations (m) and the forces (N).
-    `roughness` is None for smooth bodies.
+    (m/s) that reaches it. `loading` maps indentation (m) to force (N), `separation` maximum
+    indentation (m) to the indentation at separation (m). `unloading` has one curve for each depth
+    of `unloading_from` (m, increasing): increasing indentations (m) and forces (N). `roughness` is
+    None for smooth bodies.
     """
 
     pair: Pair
@@ -114,11 +102,9 @@ class StoredForce:
             raise CaseError("density: is missing; integrating a collision in time needs the masses")
 
     def branch(self, deepest: float) -> tuple[Force, float, bool]:
-        """Return the force of unloading from `deepest` (m), the end of contact (m), and a flag.
+        """Force of unloading from `deepest` (m), end of contact (m), and whether it is blended.
 
-        The end of contact is the indentation at separation. The flag says whether the force is
-        interpolated between two stored curves. Raises `DomainError` if `deepest` is outside the
-        depths of the stored curves.
+        Raises `DomainError` if `deepest` is outside the depths of the stored curves.
         """
         depths = self.unloading_from
         if not depths[0] * (1 - _SAME) <= deepest <= depths[-1] * (1 + _SAME):
@@ -132,11 +118,9 @@ class StoredForce:
         return lambda x: largest * shape((x - end) / (deepest - end)), end, blended
 
     def shape(self, deepest: float) -> tuple[Callable[[Any], Any], bool]:
-        """Return the shape of the unloading curve from `deepest` (m), and a flag.
+        """F/F_max against (δ − δ_s)/(δ_max − δ_s) from `deepest` (m), and whether it is blended.
 
-        The shape is F/F_max as a function of (δ − δ_s)/(δ_max − δ_s); the module docstring defines
-        these symbols. The flag says whether the shape is interpolated between two stored curves. If
-        `deepest` is outside the stored depths, the nearest stored curve gives the shape.
+        Outside the stored depths, the nearest stored curve gives the shape.
         """
         depths = self.unloading_from
         near = np.flatnonzero(np.abs(depths / deepest - 1) < _SAME)
@@ -151,7 +135,7 @@ class StoredForce:
 
 
 def stored_force(out: Path) -> StoredForce:
-    """Read the force law of the run in the folder `out`. Raises `OutputError`, `CaseError`."""
+    """The force law of the run in the folder `out`. Raises `OutputError`, `CaseError`."""
     if not (out / "results.nc").exists():
         raise OutputError(
             f"{out}: holds no results of a run; give the folder that `restitution run` wrote"
@@ -171,11 +155,10 @@ def stored_force(out: Path) -> StoredForce:
 
 
 def force_of(pair: Pair, results: xr.Dataset, unloading: Sequence[UnloadingCurve]) -> StoredForce:
-    """Make the force law of `pair` from the results of a run and its unloading curves.
+    """The force law of `pair` from the results of a run and its unloading curves, by `start`.
 
-    `results` has the variables of `results.nc`, including `height`, `x` and `y`. `unloading` is
-    sorted by `start`. Raises `OutputError` if no unloading reaches separation, and `CaseError` if
-    `pair` has no mass.
+    `results` has the variables of `results.nc`, including `height`, `x` and `y`. Raises
+    `OutputError` if no unloading reaches separation, and `CaseError` if `pair` has no mass.
     """
     depth, force = results["indentation"].values, results["force"].values
     return StoredForce(
@@ -206,9 +189,8 @@ def _roughness(results: xr.Dataset, depth: Array) -> StoredRoughness | None:
 def collide_in_time(law: StoredForce, velocity: float) -> ReferenceCollision:
     """Integrate a head-on collision of the two particles of `law` at relative `velocity` (m/s).
 
-    The particles start at first touch, in the frame of their centre of mass (with a wall, in the
-    frame of the wall). Raises `DomainError` if `velocity` is outside the computed velocities, or if
-    the largest indentation is outside the depths of the unloading curves. Raises
+    They start at first touch, in the frame of their centre of mass (or of the wall). Raises
+    `DomainError` outside the computed velocities or the depths of the unloading curves, and
     `NotConvergedError` if the integration fails or reaches the end of the loading curve.
     """
     if not 0 < velocity <= law.highest * (1 + 1e-9):
@@ -267,7 +249,7 @@ def collide_in_time(law: StoredForce, velocity: float) -> ReferenceCollision:
 
 
 def course(collision: ReferenceCollision) -> list[dict[str, float]]:
-    """Convert the time series of a collision to table rows."""
+    """The time series of a collision as table rows."""
     return table_rows(
         {
             "impact_velocity_m_per_s": collision.velocity,
@@ -280,7 +262,7 @@ def course(collision: ReferenceCollision) -> list[dict[str, float]]:
 
 
 def table_rows(columns: Mapping[str, Array | float]) -> list[dict[str, float]]:
-    """Convert columns of equal length to table rows. A single number is repeated in every row."""
+    """Table rows from columns of equal length; a single number is repeated in every row."""
     values = [column.tolist() for column in np.broadcast_arrays(*columns.values())]
     return [dict(zip(columns, row, strict=True)) for row in zip(*values, strict=True)]
 
@@ -302,7 +284,7 @@ def _integrate(
 
     for event in events:
         event.terminal = True  # type: ignore[attr-defined]
-    found = solve_ivp(
+    path = solve_ivp(
         rates,
         (0.0, 1e3 * scale / velocity),
         start,
@@ -312,16 +294,15 @@ def _integrate(
         atol=[_RTOL * scale] * 2 + [_RTOL * velocity] * 2,
         max_step=scale / velocity,
     )
-    if found.status != 1:
+    if path.status != 1:
         raise NotConvergedError(
-            f"velocity: the collision at {velocity:.6g} m/s did not end ({found.message}); "
+            f"velocity: the collision at {velocity:.6g} m/s did not end ({path.message}); "
             "choose another velocity"
         )
-    return found
+    return path
 
 
 def _loading(depth: Array, force: Array, work: Array) -> Force:
-    """Return the loading force (N): the derivative of `work` with respect to the indentation."""
     with np.errstate(divide="ignore", invalid="ignore"):
         powers = force * depth / work
     if (work > 0).all() and (powers > 0.5).all() and (powers < _STEEPEST).all():
@@ -337,8 +318,8 @@ def _loading(depth: Array, force: Array, work: Array) -> Force:
             at = math.log(x)
             if at <= first:
                 return float(slope[0] * work[0] / x * math.exp(slope[0] * (at - first)))
-            value, its_slope = log_work(at)
-            return math.exp(value) / x * its_slope
+            value, exponent = log_work(at)
+            return math.exp(value) / x * exponent
 
         return pushing
     # W is not a power of δ, usually because of adhesion. Up to the first stored depth, the force is
@@ -350,10 +331,7 @@ def _loading(depth: Array, force: Array, work: Array) -> Force:
 
 
 def _hermite(x: Array, y: Array, slope: Array) -> Callable[[float], tuple[float, float]]:
-    """Return a function for the value and the slope of a cubic Hermite spline.
-
-    Beyond the last point, the spline continues as a straight line.
-    """
+    """Value and slope of a cubic Hermite spline, which goes on as a straight line."""
     from scipy.interpolate import CubicHermiteSpline
 
     if x.size == 1:
@@ -364,8 +342,8 @@ def _hermite(x: Array, y: Array, slope: Array) -> Callable[[float], tuple[float,
 
     def at(where: float) -> tuple[float, float]:
         inside = min(where, last)
-        its_slope = float(rate(inside))
-        return float(curve(inside)) + its_slope * (where - inside), its_slope
+        slope_there = float(rate(inside))
+        return float(curve(inside)) + slope_there * (where - inside), slope_there
 
     return at
 
@@ -383,7 +361,6 @@ def _separation(results: xr.Dataset, depth: Array) -> Callable[[float], float]:
 
 
 def _shape(x: Array, F: Array) -> Force:
-    """Return F/F_max of one unloading curve, as described in `StoredForce.shape`."""
     return _pchip((x - x[0]) / (x[-1] - x[0]), F / F[-1])
 
 

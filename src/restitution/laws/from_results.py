@@ -24,11 +24,9 @@ _SAME = 1e-9  # largest relative difference of values that count as equal
 def bare_law(out: Path) -> Law:
     """Make the law of the results in the folder `out`, without fits.
 
-    The law of an ensemble contains the means over its surfaces, and its errors include the
-    confidence interval of the mean. The errors from a convergence study include the error of the
-    grid. Depths with a negative loading work (because of adhesion) have no impact velocity and are
-    left out. Raises `OutputError` if the folder holds no run, and `CaseError` if no depth has an
-    impact velocity.
+    The law of an ensemble holds means over its surfaces; its errors include the confidence interval
+    of the mean, and those of a convergence study the error of the grid. Depths without impact
+    velocity are left out. Raises `OutputError` and `CaseError`.
     """
     run = _read(out)
     try:
@@ -71,7 +69,7 @@ def _law(out: Path, run: RunResults) -> Law:
             f"{left} of {len(rows)} depths are left out: no impact has its maximum indentation "
             "there, because adhesion alone pulls the bodies deeper or the bodies do not touch"
         )
-    if unknown := sum(_is_unknown(row, asked=case.total_error) for row in rows):
+    if unknown := sum(_is_unknown(row, wanted=case.total_error) for row in rows):
         warnings.append(
             f"the total error is unknown at {unknown} of {len(rows)} depths; the error stated "
             "there is the largest possible one, the larger of COR and 1 - COR"
@@ -100,7 +98,7 @@ def _law(out: Path, run: RunResults) -> Law:
         model={key: str(value) for key, value in model.items()},
         conventions=Conventions(
             **summary["conventions"],
-            restitution_error=_error_includes(summary["diagnostics"], asked=case.total_error),
+            restitution_error=_error_includes(summary["diagnostics"], wanted=case.total_error),
         ),
         yield_velocity=derived["yield_velocity_m_per_s"],
         smooth_sticking_velocity=derived.get("sticking_velocity_m_per_s"),
@@ -145,13 +143,9 @@ def _read(out: Path) -> RunResults:
     return run
 
 
-def _error_includes(diagnostics: Mapping[str, object], *, asked: bool) -> str:
-    """State in words what `LawPoint.error` includes, and what it does not include.
-
-    `asked` states whether the case asks for the total error.
-    """
+def _error_includes(diagnostics: Mapping[str, object], *, wanted: bool) -> str:
     includes = diagnostics.get("total_error_includes")
-    if not includes and asked:
+    if not includes and wanted:
         return "everything, because it is the largest possible error of COR"
     includes = includes or "solver"
     excludes = diagnostics.get("total_error_does_not_include") or "anything else"
@@ -161,17 +155,17 @@ def _error_includes(diagnostics: Mapping[str, object], *, asked: bool) -> str:
 
 
 def _points(run: RunResults) -> list[LawPoint]:
-    found: list[LawPoint] = []
+    points: list[LawPoint] = []
     for row in run.curve.rows:
         velocity, work = row["impact_velocity_m_per_s"], row["loading_work_J"]
-        if not velocity > 0 or not work > 0 or (found and velocity <= found[-1].velocity):
+        if not velocity > 0 or not work > 0 or (points and velocity <= points[-1].velocity):
             continue
         pull_off, error = row["pull_off_force_N"], row["pull_off_error_N"]
-        found.append(
+        points.append(
             LawPoint(
                 velocity=velocity,
                 restitution=row["restitution"],
-                error=_error(row, asked=run.case.total_error),
+                error=_error(row, wanted=run.case.total_error),
                 ratio=_ratio(row, work, means=isinstance(run, EnsembleResults)),
                 loading_work=work,
                 indentation=row["max_indentation_m"],
@@ -181,35 +175,23 @@ def _points(run: RunResults) -> list[LawPoint]:
                 resolved=bool(row["resolved"]),
             )
         )
-    return found
+    return points
 
 
 def _ratio(row: _Row, work: float, *, means: bool) -> float:
-    """Ratio of unloading to loading work.
-
-    If `means` is true, the row contains means over surfaces. The ratio is then the square of the
-    mean COR, so that both agree. If the mean COR is 0, the ratio of the mean works is returned.
-    """
     ratio, e = row["unloading_work_J"] / work, row["restitution"]
     return e * e if means and e > 0 else ratio
 
 
-def _error(row: _Row, *, asked: bool) -> float:
-    """Return the total error of a row.
-
-    If the case `asked` for the total error but the row has none, a part of the error is unknown.
-    The result is then the largest possible error of COR. If the case did not ask for the total
-    error, the result is the root sum of squares of the known parts.
-    """
-    if _is_unknown(row, asked=asked):
+def _error(row: _Row, *, wanted: bool) -> float:
+    if _is_unknown(row, wanted=wanted):
         return max(row["restitution"], 1 - row["restitution"])
     known = row.get("total_error", math.nan)
     return total(row) if math.isnan(known) else known
 
 
-def _is_unknown(row: _Row, *, asked: bool) -> bool:
-    """Whether the case `asked` for a total error that the row lacks."""
-    return asked and math.isnan(row.get("total_error", math.nan))
+def _is_unknown(row: _Row, *, wanted: bool) -> bool:
+    return wanted and math.isnan(row.get("total_error", math.nan))
 
 
 def _particle(name: str, body: BodyTable) -> Particle:
@@ -225,5 +207,4 @@ def _particle(name: str, body: BodyTable) -> Particle:
 
 
 def _rounded(value: float | None) -> float | None:
-    """Remove the rounding error of a conversion of units: 9.999999999999999e-06 gives 1e-05."""
     return None if value is None else float(f"{value:.12g}")

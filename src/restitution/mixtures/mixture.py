@@ -1,10 +1,7 @@
-"""Compute all laws of a mixture from as few runs as the error of interpolation allows.
+"""All laws of a mixture from as few runs as the error of interpolation allows, and their files.
 
-A component is a material or a wall. A family consists of all pairs of bodies from the same two
-components. For each family, laws are first computed at the smallest, a middle and the largest
-reduced radius R*. The laws at other R* are interpolated. If the interpolation error of a pair
-exceeds its limit, the law at one more R* is computed, about in the middle between two computed R*.
-This is repeated until no error exceeds its limit.
+Each family begins with laws at the smallest, a middle and the largest R*. Where the interpolation
+error of a pair exceeds its limit, a law at one more R* is computed, until none does.
 """
 
 from __future__ import annotations
@@ -36,9 +33,9 @@ Progress = Callable[[Tally], None]
 
 @dataclass(frozen=True)
 class PairLaw:
-    """The law of one pair of particles, and whether it was `computed` or interpolated.
+    """The law of one pair of particles, `computed` or interpolated.
 
-    `interpolation_error` is the error of COR due to interpolation, and is 0 for a computed law.
+    `interpolation_error` is the error of COR due to interpolation, 0 for a computed law.
     """
 
     law: Law
@@ -53,24 +50,23 @@ def run_mixture(
     workers: Workers,
     progress: Progress,
 ) -> list[PairLaw]:
-    """Compute the law of every pair of `mixture`.
+    """Compute the law of every pair of `mixture`, with scans relative to `folder`.
 
-    Paths of scans are relative to `folder`. Runs are stored as the cases of a study in `out`, so
-    that an interrupted computation can be resumed. Raises `OutputError` if a run fails, because
-    some pairs would then have no law.
+    Runs are stored as the cases of a study in `out`, which can be resumed. Raises `OutputError` if
+    a run fails.
     """
-    found = families(mixture)
+    all_families = families(mixture)
     cases: dict[tuple[str, float], SweptCase] = {}
-    wanted = [(family, radius) for family in found for radius in _first_radii(family)]
+    wanted = [(family, radius) for family in all_families for radius in _first_radii(family)]
     while wanted:
         for family, radius in wanted:
             values = {"pair": family.name, "reduced_radius": f"{1e6 * radius:.6g} um"}
             case = SweptCase(len(cases) + 1, values, family.case(radius))
             cases[family.name, radius] = case
         _run_all(tuple(cases.values()), folder, out, workers, progress)
-        computed = [_computed(family, cases, out) for family in found]
-        wanted = [(each.family, radius) for each in computed for radius in _more_radii(each)]
-    return [_pair_law(each, pair) for each in computed for pair in each.family.pairs]
+        computed = [_computed(family, cases, out) for family in all_families]
+        wanted = [(laws.family, radius) for laws in computed for radius in _more_radii(laws)]
+    return [_pair_law(laws, pair) for laws in computed for pair in laws.family.pairs]
 
 
 def _run_all(
@@ -80,7 +76,6 @@ def _run_all(
     workers: Workers,
     progress: Progress,
 ) -> None:
-    """Store `cases` as the cases of the study in `out`, and run those that have no results."""
     swept = {name: [case.values[name] for case in cases] for name in cases[0].values}
     out.study = replace(out.study, swept=swept, cases=cases)
     run_study(out.study, folder, out, workers, progress)
@@ -95,7 +90,6 @@ def _run_all(
 def _computed(
     family: Family, cases: Mapping[tuple[str, float], SweptCase], out: StudyFolder
 ) -> FamilyLaws:
-    """Read the laws of `family` that have been computed so far, in order of reduced radius."""
     radii = sorted(radius for name, radius in cases if name == family.name)
     folders = [out.folder_of(cases[family.name, radius]) for radius in radii]
     return FamilyLaws(family, tuple(map(bare_law, folders)))
@@ -108,11 +102,7 @@ def _first_radii(family: Family) -> list[float]:
 
 
 def _more_radii(computed: FamilyLaws) -> Iterator[float]:
-    """Yield the reduced radii (m) at which laws are computed next.
-
-    A pair whose reduced radius lies between two computed radii can have too large an interpolation
-    error. One radius between these two is then chosen.
-    """
+    """One R* (m) between two computed ones, where a pair has too large an interpolation error."""
     family = computed.family
     poor = {pair.radius for pair in family.pairs if not computed.is_good(pair)}
     for low, high in zip(computed.radii[:-1], computed.radii[1:], strict=True):
@@ -136,8 +126,7 @@ def _pair_law(computed: FamilyLaws, pair: ParticlePair) -> PairLaw:
 def open_mixture_folder(out: Path, mixture: Mixture, *, resume: bool) -> StudyFolder:
     """Open the folder in `out` that holds the runs of `mixture`.
 
-    Raises `OutputError` if `out` holds other files, if there is nothing to resume, or if `out`
-    cannot be written.
+    Raises `OutputError` if `out` holds other files or nothing to resume, or cannot be written.
     """
     prepare_folder(out, MIXTURE_FILE, mixture.text, resume=resume, what="mixture")
     begun = (out / RUNS / STUDY_FILE).is_file()
@@ -150,10 +139,9 @@ def open_mixture_folder(out: Path, mixture: Mixture, *, resume: bool) -> StudyFo
 def write_mixture(
     out: Path, mixture: Mixture, pairs: Sequence[PairLaw], runs: int, seconds: float
 ) -> list[str]:
-    """Write the laws of all `pairs`, a table of these laws, and the summary.
+    """Write the laws of all `pairs`, a table of them, and the summary; return their names.
 
-    `runs` is the number of computed curves, and `seconds` the time for computing them. Returns the
-    names of the files and folders in `out`. Raises `OutputError`.
+    `runs` is the number of computed curves, which took `seconds`. Raises `OutputError`.
     """
     with writing(out):
         shutil.rmtree(out / LAWS, ignore_errors=True)
@@ -199,17 +187,14 @@ def write_mixture(
 
 
 def condensed_warnings(pairs: Sequence[PairLaw]) -> list[str]:
-    """List each warning once, with its pairs.
-
-    Warnings that differ only in numbers count as one.
-    """
-    found: dict[str, list[tuple[str, str]]] = {}
+    """Each warning once, with its pairs; warnings that differ only in numbers count as one."""
+    groups: dict[str, list[tuple[str, str]]] = {}
     for pair in pairs:
         family = f"{pair.law.first.name}+{pair.law.second.name}"
         for warning in dict.fromkeys(pair.law.warnings):
-            found.setdefault(without_numbers(warning), []).append((family, warning))
+            groups.setdefault(without_numbers(warning), []).append((family, warning))
     return [
         f"{len(of)} of {len(pairs)} pairs ({some_of([family for family, _ in of])}): {of[0][1]}"
         + ("" if len({text for _, text in of}) == 1 else " (with other numbers in other pairs)")
-        for of in found.values()
+        for of in groups.values()
     ]

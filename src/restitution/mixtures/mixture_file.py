@@ -29,11 +29,10 @@ _T = TypeVar("_T", bound=Table)
 
 
 class Sizes(Table):
-    """A table `radius` of a material: bins with edges, or a distribution that is divided into bins.
+    """A table `radius` of a material: bins with edges, or a distribution divided into bins.
 
-    Each bin counts as one size. The radius of this size is the geometric mean of the edges or, for
-    a distribution, the median of the bin. All bins of a distribution hold the same number of
-    particles.
+    The radius of a bin is the geometric mean of its edges or, of a distribution, its median; all
+    bins of a distribution hold the same number of particles.
     """
 
     edges: Annotated[list[Length] | None, Field(min_length=2, max_length=MOST_SIZES + 1)] = None
@@ -76,14 +75,8 @@ class Sizes(Table):
 class Component:
     """A material with its sizes, or a wall.
 
-    Attributes:
-        name: Name of the component in the mixture file.
-        body: Keys of a body table of a case (`[first]` or `[second]`) without `radius`, as written
-            in the mixture file.
-        material: The checked values of `body`.
-        roughness: Roughness tables.
-        radii: Radii of the sizes (m), increasing; empty for a wall.
-        fractions: Fractions by number of the sizes, with the sum 1; empty for a wall.
+    `body` is a body table of a case without `radius`, as written, and `material` its checked
+    values. `radii` (m, increasing) and `fractions` (by number, sum 1) are empty for a wall.
     """
 
     name: str
@@ -110,8 +103,6 @@ _Interface = Annotated[InterfaceTable, BeforeValidator(_with_some_adhesion)]
 
 
 class _File(Table):
-    """The keys of a mixture file, except the tables of materials and walls."""
-
     title: str = ""
     interpolation_error: Annotated[float, Field(gt=0, lt=1)] = 0.01
     interface: _Interface = InterfaceTable()
@@ -124,8 +115,8 @@ class _File(Table):
 class Mixture:
     """A checked mixture file.
 
-    `grid` is the table as written in the file. `interfaces` maps the names of two components to the
-    table `[interface]` of their pairs. The key `frozenset()` stands for all other pairs.
+    `grid` is the table as written. `interfaces` maps the names of two components to the table
+    `[interface]` of their pairs, and `frozenset()` to that of all other pairs.
     """
 
     title: str
@@ -188,7 +179,6 @@ def parse_mixture(text: str) -> Mixture:
 
 
 def _names_of(key: str, names: list[str]) -> frozenset[str]:
-    """Split the key of a pair into the names of its two components."""
     for first, second in itertools.product(names, repeat=2):
         if key == f"{first}+{second}":
             return frozenset((first, second))
@@ -226,14 +216,10 @@ def _component(key: str, name: str, table: Any) -> Component:
 
 
 class _Rough(Table):
-    """A table that is used only to check the roughness tables of a component."""
-
     roughness: list[Roughness]
 
 
 class _Radii(Table):
-    """A table that is used only to check a list of radii."""
-
     radius: Annotated[list[Length], Field(min_length=1, max_length=MOST_SIZES)]
 
 
@@ -248,7 +234,6 @@ def _radii(key: str, sizes: Any) -> tuple[float, ...]:
 
 
 def _validated(model: type[_T], table: dict[str, Any], key: str = "") -> _T:
-    """Check `table` against `model`; `key` is its dotted path in the file. Raises `CaseError`."""
     try:
         return model.model_validate(table)
     except ValidationError as error:
@@ -258,23 +243,11 @@ def _validated(model: type[_T], table: dict[str, Any], key: str = "") -> _T:
 def _number_fractions(
     key: str, table: dict[str, Any], sizes: object, radii: Sequence[float]
 ) -> tuple[float, ...]:
-    """Remove the fractions from the `table` of a material, and return fractions by number.
+    """Take the fractions from the `table` of a material; return fractions by number, sum 1.
 
-    The sum of the result is 1. Without fractions, every size has the same number of particles. All
-    sizes have the same density, so a mass fraction is proportional to the number of particles times
-    the cube of their radius.
-
-    Args:
-        key: Dotted path of the table in the mixture file, for error messages.
-        table: Table of the material. The key of the fractions is removed from it.
-        sizes: Value of the key `radius`.
-        radii: Radii of the sizes (m), in the order of the file.
-
-    Returns:
-        Fraction by number of each size, in the order of `radii`.
-
-    Raises:
-        CaseError: The fractions are invalid. The message names the key.
+    All sizes have the same density, so a mass fraction is proportional to number times radius
+    cubed. `sizes` is the key `radius`, and `radii` (m) what it means; without fractions, all sizes
+    are equal. Raises a `CaseError` that names `key`.
     """
     given = [name for name in _FRACTIONS if name in table]
     if len(given) > 1:

@@ -1,12 +1,7 @@
 """Interpolate the laws of all pairs of a family between laws at a few reduced radii R*.
 
-A family contains all pairs of particles from two components of a mixture. W is the loading work.
-Unloading work divided by W is interpolated at equal W/R*³, by a monotone cubic in ln R*.
-
-`RatioCurve` estimates the error from leave-one-out residuals. Such a residual is the error at a
-computed R* if this R* is left out of the interpolation. It can be zero by chance. Therefore, the
-error at a velocity is the largest of three estimates: at this velocity, at the next lower and at
-the next higher velocity.
+W_u/W_l is interpolated at equal W_l/R*³, by a monotone cubic in ln R*. A leave-one-out residual can
+be zero by chance, so the error is the largest of those at this velocity and the next ones.
 """
 
 from __future__ import annotations
@@ -34,7 +29,7 @@ _SAME = 1e-9  # largest relative difference of radii that count as equal
 
 @dataclass(frozen=True)
 class FamilyLaws:
-    """The computed laws of a family (all pairs of two components), by increasing reduced radius."""
+    """The computed laws of a family, by increasing reduced radius."""
 
     family: Family
     laws: tuple[Law, ...]
@@ -51,9 +46,8 @@ class FamilyLaws:
     def is_good(self, pair: ParticlePair) -> bool:
         """Whether the law of the pair is accurate enough without a law at another reduced radius.
 
-        At every velocity, the error of COR due to interpolation in R* must not exceed the larger of
-        two limits. One is the `interpolation_error` given for the mixture. The other is a quarter
-        of the error of the computed laws, but not more than 0.05.
+        Its interpolation error may be `interpolation_error` of the mixture, or a quarter of the
+        error of the computed laws, at most 0.05.
         """
         points, errors = self._points(pair), self.interpolation_errors(pair)
         limit = self.family.mixture.interpolation_error
@@ -73,10 +67,7 @@ class FamilyLaws:
         ]
 
     def law(self, pair: ParticlePair) -> Law:
-        """The law of one pair at the velocities of the mixture.
-
-        The error of a point is the error of the computed laws plus the interpolation error.
-        """
+        """The law of one pair at the velocities of the mixture, with its interpolation error."""
         nearest = self.laws[int(np.abs(np.log(self.radii / pair.radius)).argmin())]
         kappa = nearest.mass / nearest.radius**3
         slower = (pair.radius / nearest.radius) ** (2 / 3)
@@ -110,12 +101,11 @@ class FamilyLaws:
         )
 
     def _curves(self, pair: ParticlePair) -> list[RatioCurve]:
-        """Make the curve of the work ratio W_u/W_l against R* for each velocity of the mixture."""
         ratios = (
             np.array([law.curve().at(_of(law, V, pair)) for law in self.laws], dtype=float)
             for V in self.family.mixture.velocities
         )
-        return [RatioCurve(self.radii, each, adhesive=False) for each in ratios]
+        return [RatioCurve(self.radii, ratio, adhesive=False) for ratio in ratios]
 
     def _point(self, pair: ParticlePair, V: float, curve: RatioCurve, between: float) -> LawPoint:
         ratio = _value(curve, pair.radius)
@@ -126,10 +116,7 @@ class FamilyLaws:
         used = [k for k, share in enumerate(shares) if share > _SAME]
 
         def mean(name: str, power: int) -> float:
-            """Interpolate the field `name` between the laws at the next lower and higher R*.
-
-            The interpolated quantity is the field divided by R*^power.
-            """
+            """Interpolate the field `name` over R*^power between the laws at the next R*."""
             R = pair.radius
             return R**power * sum(
                 shares[k]
@@ -153,10 +140,9 @@ class FamilyLaws:
 
 
 def _of(law: Law, V: float, pair: ParticlePair) -> float:
-    """Velocity (m/s) at which W/R*³ of `law` equals W/R*³ of the pair `pair` at `V` (m/s).
+    """Velocity (m/s) at which W/R*³ of `law` equals that of `pair` at `V` (m/s).
 
-    W is the loading work, and R* the reduced radius. If the velocity is outside the range of `law`
-    by at most 1e-3 (relative), the nearest velocity of this range is returned.
+    The nearest velocity of `law` if it is outside by at most 1e-3.
     """
     velocity = V * math.sqrt(pair.kappa / (law.mass / law.radius**3))
     near = law.lowest * (1 - 1e-3) <= velocity <= law.highest * (1 + 1e-3)
@@ -168,11 +154,6 @@ def _value(curve: RatioCurve, radius: float) -> float:
 
 
 def _error_of(curve: RatioCurve, radius: float, near: list[RatioCurve]) -> float:
-    """The interpolation error of COR at the reduced `radius` (m), at one velocity.
-
-    `curve` is the ratio of unloading to loading work against reduced radius at this velocity.
-    `near` contains `curve` and the curves at the next lower and higher velocity.
-    """
     ratio = _value(curve, radius)
     off = max(other.error(radius) for other in near)
     e = _root(ratio)
@@ -180,11 +161,7 @@ def _error_of(curve: RatioCurve, radius: float, near: list[RatioCurve]) -> float
 
 
 def _column_at(law: Law, name: str, velocity: float) -> float:
-    """Interpolate the field `name` of the points of `law` at `velocity` (m/s).
-
-    Between two points, the logarithm of the field is linear in the logarithm of the velocity. If
-    any value is not positive, the field itself is linear in the logarithm of the velocity.
-    """
+    """The field `name` at `velocity` (m/s): a power of it or, if not positive, linear in ln V."""
     L, values = np.log(law.column("velocity")), law.column(name)
     if (values <= 0).any():
         return float(np.interp(math.log(velocity), L, values))

@@ -51,7 +51,7 @@ class SweptCase:
 class Study:
     """A checked study file, expanded into valid cases.
 
-    `swept` maps each dotted key ("roughness.rms") to its values as written in the file.
+    `swept` maps each dotted key ("roughness.rms") to its values as written.
     """
 
     title: str
@@ -105,10 +105,7 @@ def parse_study(text: str) -> Study:
 
 
 def _paths(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, list[Any]]]:
-    """Yield dotted keys and their values.
-
-    A key may be written with or without quotes: `"roughness.rms" = …` or `roughness.rms = …`.
-    """
+    """Dotted keys and values; a key may be written with or without quotes."""
     for key, value in table.items():
         if isinstance(value, dict):
             yield from _paths(value, f"{before}{key}.")
@@ -127,20 +124,18 @@ def _check_values(swept: Mapping[str, Any], mode: str) -> None:
     lengths = {key: len(values) for key, values in swept.items()}
     if mode == "paired":
         if len(set(lengths.values())) > 1:
-            each = ", ".join(f"{key} {n}" for key, n in lengths.items())
+            listed = ", ".join(f"{key} {n}" for key, n in lengths.items())
             raise CaseError(
-                f'sweep: mode = "paired" needs lists of equal length; the lengths are {each}'
+                f'sweep: mode = "paired" needs lists of equal length; the lengths are {listed}'
             )
     elif (count := math.prod(lengths.values())) > MOST_CASES:
         raise CaseError(f"sweep: gives {count} cases; reduce them to at most {MOST_CASES}")
 
 
 def put(case: dict[str, Any], path: str, value: Any) -> None:
-    """Set the key at the dotted `path` to `value`.
+    """Set the key at the dotted `path` to `value`; a number selects one of several tables, from 1.
 
-    A number in the path selects one of several tables; the first table has the number 1. Raises
-    `CaseError` if the path leads through a value, or if it does not select one of several tables
-    by a valid number.
+    Raises `CaseError` if the path leads through a value, or selects no table.
     """
     table: Any = case
     *way, last = path.split(".")
@@ -163,17 +158,16 @@ def put(case: dict[str, Any], path: str, value: Any) -> None:
 
 
 def as_text(value: Any) -> str:
-    """Format a swept value as written in the study file: "0.1 um", 3, true, [1, 2]."""
+    """A swept value as written in the study file: "0.1 um", 3, true, [1, 2]."""
     if isinstance(value, str):
         return value
     return json.dumps(value, ensure_ascii=False, default=str)
 
 
 def coordinate(values: Sequence[Any]) -> tuple[list[Any], dict[str, str]]:
-    """Convert the values of a swept key to a coordinate; return its values and attributes.
+    """Values and attributes of the coordinate of a swept key in `study.nc`.
 
-    Quantities of one kind ("0.1 um") become numbers in SI units, with the attribute `units`.
-    Numbers stay numbers. All other values become text as written in the study file.
+    Quantities of one kind become numbers in SI units; all other values but numbers become text.
     """
     texts = [as_text(value) for value in values]
     attributes = {AS_WRITTEN: json.dumps(texts, ensure_ascii=False)}

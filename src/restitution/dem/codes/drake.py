@@ -63,15 +63,12 @@ class HuntCrossleyContact:
         return self.pair.law.mass * (math.pi / self.pair.contact_time) ** 2
 
     def restitution(self, share: float) -> float:
-        """Return Drake's coefficient of restitution at `share` times the velocity of the export."""
+        """Drake's e at `share` times the velocity of the export."""
         return hunt_crossley_restitution(self.dissipation * self.pair.velocity * share)
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """Write a Python module with the contact parameters, and a test collision that prints e.
-
-    Returns file names and texts. Raises `CaseError`, `DomainError`.
-    """
+    """A Python module with the contact parameters, and a test collision; names and texts."""
     export = Export(table, velocity, CODE, LOWEST, _ENDS, constant=False)
     contacts = [
         HuntCrossleyContact(pair, hunt_crossley_dissipation(pair.restitution) / velocity)

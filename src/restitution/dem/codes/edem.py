@@ -33,7 +33,7 @@ _NOTES = [
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """Write notes and the two tables; return file names and texts. Raises `DomainError`."""
+    """Notes and the two tables; names and texts. Raises `DomainError`."""
     export = Export(table, velocity, CODE, 0.0, _ENDS)
     friction = f"{export.friction_note('#')}\n# Rolling friction 0 is a placeholder."
     ending = f"{export.ending('#')}\n".lstrip()
@@ -62,12 +62,9 @@ def _interaction(pair: ExportedPair) -> dict[str, str]:
 
 
 def _springs(pair: ExportedPair) -> tuple[float, float]:
-    """Return the stiffnesses K1 and K2 (N/m) of the Walton–Braun law fitted to the pair.
+    """Stiffnesses K1 and K2 (N/m) of the fitted Walton–Braun law; NaN outside its range.
 
-    K1 is the loading stiffness. The unloading stiffness is K2 = k_u + S V (m* K1)^½. Here V is the
-    velocity (m/s) of the export and m* the reduced mass. k_u (the unloading stiffness without
-    hardening) and S (the hardening) are fitted parameters. Both stiffnesses are NaN if there is no
-    such fit, or if V is outside the fitted range.
+    K2 = k_u + S V (m* K1)^½ at the velocity V of the export.
     """
     fit = pair.fitted("walton-braun")
     if fit is None or not pair.law.fits_hold_at(pair.velocity):

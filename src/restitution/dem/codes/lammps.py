@@ -65,12 +65,10 @@ _KOKKOS_ENDS = (
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """Write the input files for LAMMPS; return file names and texts.
+    """The input files for LAMMPS; names and texts. Raises `CaseError`, `DomainError`.
 
-    The files are notes, a fragment to include, a fragment for the package KOKKOS, the script
-    `match_velocity.py`, a test collision, and a packing. In the packing, spheres of all types fall
-    on a wall. There is no packing if `table` has no law between spheres, or if no wall has laws
-    with all types of spheres. Raises `CaseError`, `DomainError`.
+    There is no packing if `table` has no law between spheres, or if no wall has laws with all
+    types.
     """
     table.require_spheres(CODE)
     export = Export(table, velocity, CODE, LOWEST, _ENDS)
@@ -116,11 +114,6 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
 
 
 def _tangential(pair: ExportedPair) -> str:
-    """The tangential model of a pair.
-
-    If the case has no friction, the model has Mindlin's full stiffness, which LAMMPS computes
-    (NULL). Otherwise the stiffness is `STIFFNESS_SHARE` times Mindlin's stiffness.
-    """
     if pair.law.friction is None:
         return f"mindlin NULL 1.0 {pair.friction}"
     stiffness = STIFFNESS_SHARE * pair.mindlin_stiffness
@@ -130,9 +123,8 @@ def _tangential(pair: ExportedPair) -> str:
 def _counts(table: PairTable) -> list[int]:
     """Number of spheres of each type, at least one; the sum is `_GRAINS`.
 
-    The numbers are proportional to the number fractions of the types. A type without a number
-    fraction has the fraction 1. The fractions of all sizes of a material add up to 1. Therefore,
-    all materials of a mixture have the same number of spheres.
+    The fractions of all sizes of a material add up to 1, so all materials of a mixture have the
+    same number of spheres.
     """
     weights = [body.number_fraction or 1.0 for body in table.spheres]
     ends = [round(_GRAINS * part / sum(weights)) for part in itertools.accumulate(weights)]
@@ -142,10 +134,6 @@ def _counts(table: PairTable) -> list[int]:
 
 
 def _floor(table: PairTable) -> int | None:
-    """Type number of the first wall that has a law in `table` with every type of sphere.
-
-    None if there is no such wall.
-    """
     count = len(table.spheres)
     walls = range(count + 1, len(table.particles) + 1)
     with_all = (w for w in walls if all((k, w) in table.laws for k in range(1, count + 1)))
@@ -165,20 +153,16 @@ class VelocityDamping:
         return 4 / 3 * self.pair.law.contact_modulus
 
     def restitution(self, share: float) -> float:
-        """Return COR at `share` times `pair.velocity`, the impact velocity of the export."""
+        """COR at `share` times the velocity of the export."""
         return hertz_restitution_at(self.pair.law, self.damping, share * self.pair.velocity)
 
 
 def _velocity_damping(pair: ExportedPair) -> VelocityDamping:
-    """Compute the damping of `pair` at the impact velocity for which the law is exported.
-
-    With this damping, LAMMPS gives the coefficient of restitution of the law at this velocity.
-    """
     return VelocityDamping(pair, hertz_damping(pair.law, pair.velocity, pair.restitution))
 
 
 def _linear_spring(pair: ExportedPair) -> tuple[float, float]:
-    """Coefficients Kn (N/m) and gamma_n (1/s) of `gran/hooke/history` that give the e of `pair`."""
+    """Kn (N/m) and gamma_n (1/s) of `gran/hooke/history` that give the e of `pair`."""
     frequency = math.pi / pair.contact_time
     loss = -math.log(pair.restitution)
     ratio = loss / math.hypot(math.pi, loss)

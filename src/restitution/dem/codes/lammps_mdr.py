@@ -33,7 +33,7 @@ class MdrOffers:
 
 
 def mdr_offers(pairs: list[ExportedPair]) -> MdrOffers:
-    """Find the pairs for which the fitted mdr law can be offered."""
+    """The pairs for which the fitted mdr law can be offered."""
     offers: list[tuple[ExportedPair, FittedLaw]] = []
     refused: dict[str, list[ExportedPair]] = {}
     for pair in pairs:
@@ -47,7 +47,7 @@ def mdr_offers(pairs: list[ExportedPair]) -> MdrOffers:
 
 
 def _obstacle(pairs: list[ExportedPair], pair: ExportedPair) -> str:
-    """Return the reason why `pair` gets no mdr line; empty if it gets one."""
+    """The reason why `pair` gets no mdr line; empty if it gets one."""
     spheres = [other for other in pairs if not other.wall]
     if not pair.wall and len(spheres) > 1:
         return (
@@ -63,10 +63,6 @@ def _obstacle(pairs: list[ExportedPair], pair: ExportedPair) -> str:
 
 
 def _unfit(pair: ExportedPair) -> str:
-    """Return the reason why `pair` has no valid mdr fit; empty if it has one.
-
-    `_obstacle` adds the reasons that depend on other pairs.
-    """
     fit = pair.fitted(NAME)
     if fit is None and not pair.law.laws:
         return "no law was fitted to it"

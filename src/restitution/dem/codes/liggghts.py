@@ -36,11 +36,7 @@ _HARD, _SOFT = 1e9, 5e6
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """Write the input files for LIGGGHTS; return file names and texts.
-
-    The files are notes, a fragment to include, the script `match_velocity.py`, and a test collision
-    that prints e. Raises `CaseError`, `DomainError`.
-    """
+    """The input files for LIGGGHTS; names and texts. Raises `CaseError`, `DomainError`."""
     table.require_all(CODE)
     export = Export(table, velocity, CODE, LOWEST, _ENDS, setting=SETTING)
     pairs = export.pairs
@@ -69,10 +65,6 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
 
 
 def _hardness(table: PairTable) -> str:
-    """Return the command that makes LIGGGHTS accept the Young's moduli E of all particles.
-
-    Empty if LIGGGHTS accepts them without a command.
-    """
     E = [body.youngs_modulus for body in table.particles]
     if max(E) > _HARD:
         return "hard_particles yes"
@@ -86,9 +78,8 @@ def _by_types(
     walls: str,
     spheres: str,
 ) -> list[list[str]]:
-    """Return a symmetric matrix with a row and a column for each type.
+    """A symmetric matrix over all types, with `entry` of each pair and `walls` for pairs of walls.
 
-    `entry` gives the text for a pair. Two walls never touch, so every pair of walls gets `walls`.
     `spheres` is the text for a pair of spheres that has no law, with braces for its types.
     """
     known = {(p.i, p.j): entry(p) for p in pairs}

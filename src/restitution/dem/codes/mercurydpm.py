@@ -25,7 +25,7 @@ _ENDS = "the overlap is back to zero. The force is tensile shortly before, due t
 
 @dataclass(frozen=True)
 class _Values:
-    """Values of the pair of types `i` ≤ `j`: E* and G* (Pa), e (a number or a name), friction."""
+    """E* and G* (Pa), e (a number or a name) and friction of the pair of types `i` ≤ `j`."""
 
     i: int
     j: int
@@ -36,10 +36,7 @@ class _Values:
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """Write notes and a header to include; return names and texts.
-
-    Raises `CaseError`, `DomainError`.
-    """
+    """Notes and a header to include; names and texts. Raises `CaseError`, `DomainError`."""
     table.require_all(CODE)
     export = Export(table, velocity, CODE, 0.0, _ENDS, setting=SETTING)
     unset = table.missing_spheres()
@@ -72,7 +69,6 @@ def _known(export: Export) -> list[_Values]:
 
 
 def _unset(table: PairTable, i: int, j: int) -> _Values:
-    """The values of a pair of spheres without a law; the user gives its e."""
     bodies = table.particles[i - 1], table.particles[j - 1]
     E = 1 / sum((1 - body.poissons_ratio**2) / body.youngs_modulus for body in bodies)
     return _Values(i, j, E, shear_modulus(*bodies), f"e_{i}_{j}", FRICTION)

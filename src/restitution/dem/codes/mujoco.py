@@ -51,12 +51,11 @@ _COARSE = 50  # number of time steps in a softened contact
 
 @dataclass(frozen=True)
 class DashpotContact:
-    """Durations (s) and damping ratio (dimensionless) of a contact between two bodies.
+    """Durations (s) and damping ratio ζ of a contact between two bodies.
 
-    `duration` is that of an elastic Hertz contact, or longer if the acceleration would otherwise
-    exceed `_LARGEST`. `soft_duration` is that of a softened contact, which allows longer time
-    steps. Without damping, the largest overlap of the softened contact is the fraction `_DEEPEST`
-    of the smaller radius. `ratio` is the damping ratio ζ.
+    `duration` is that of an elastic Hertz contact, or longer if the acceleration would exceed
+    `_LARGEST`. `soft_duration` is that of a softened contact, for longer time steps: without
+    damping, its largest overlap is the fraction `_DEEPEST` of the smaller radius.
     """
 
     pair: ExportedPair
@@ -71,12 +70,7 @@ class DashpotContact:
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """Write two files: contact parameters to include in an MJCF model, and a test collision.
-
-    The test collision prints e.
-
-    Returns file names and texts. Raises `CaseError`, `DomainError`.
-    """
+    """Contact parameters to include in an MJCF model, and a test collision; names and texts."""
     export = Export(table, velocity, CODE, LOWEST, _ENDS)
     contacts = [_contact(pair) for pair in export.pairs]
     return {

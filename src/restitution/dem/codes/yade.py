@@ -51,11 +51,7 @@ _FIT = (-1.23589, 0.202669, 0.0108748, 0.000410051, -3.09169e-5, -1.19887e-6)
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """Write notes, a module to import and a test collision that prints e.
-
-    Returns file names and texts.
-    Raises `CaseError`, `DomainError`.
-    """
+    """Notes, a module to import and a test collision; names and texts."""
     table.require_all(CODE)
     export = Export(table, velocity, CODE, LOWEST, _ENDS, setting=SETTING)
     return {
@@ -79,18 +75,13 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
 
 
 def _tangential(pair: ExportedPair) -> float:
-    """The factor (dimensionless) by which the tangential stiffness of YADE is multiplied."""
     return 1.0 if pair.law.friction is None else STIFFNESS_SHARE
 
 
 def _density(body: Particle) -> float:
-    """The density (kg/m³) of a body; `_WALL_DENSITY` for a wall without a density."""
     return _WALL_DENSITY if body.wall and body.density is None else density_of(body)
 
 
 def _contact_time(pair: ExportedPair) -> float:
-    """Contact time (s) of an elastic impact at 1 m/s.
-
-    On a wall, half the radius of the sphere replaces the reduced radius R*, as in YADE.
-    """
+    """On a wall YADE uses half the radius of the sphere for R*."""
     return contact_time(pair.law, pair.law.radius / (2 if pair.wall else 1))
