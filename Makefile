@@ -72,7 +72,7 @@ fuzz: $(VENV)/test.installed  ## random and damaged input, 25 times as much as i
 	FUZZ=25 DUCC0_NUM_THREADS=1 $(BIN)/pytest -n auto tests/fuzz
 
 mutation: $(VENV)/test.installed  ## halve or drop every error bar: does a test fail?
-	$(BIN)/python mutation/error_bars.py
+	$(BIN)/python evidence/mutation/error_bars.py
 
 lint: $(VENV)/test.installed  ## style, format and types
 	$(BIN)/ruff check

@@ -3,7 +3,7 @@
 `python benchmarks/adhesion.py OTHER` measures this version and the version in the folder OTHER, in
 turn and in separate processes. To make OTHER, use `git archive COMMIT src | tar x -C OTHER` and
 copy the compiled kernels; its processes run with PYTHONPATH=OTHER/src. The results are in
-docs/benchmarks/adhesion.md.
+benchmarks/adhesion.md.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Time this program beside Tamaas, ContactMechanics and SlipPy on the same contacts.
 
 `make bench-peers` makes an environment for each program and runs this script. The script writes
-peers.csv, peers.md and peers.png into docs/benchmarks. `peers.md` (`REPORT` below) describes the
+peers.csv, peers.md and peers.png beside this file. `peers.md` (`REPORT` below) describes the
 method.
 """
 
@@ -46,7 +46,7 @@ Measured versions: {versions}.
 This page compares the computing time of the program restitution with that of other programs for the
 same contacts. Each ratio is the time of the other program divided by that of restitution in the
 same run. `make
-bench-peers` writes this page; [peers.csv](peers.csv) contains all columns.
+bench-peers` writes this page; `peers.csv` contains all columns.
 
 {table}
 
@@ -306,7 +306,7 @@ def main() -> None:
     """Run all problems and write the report."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--environments", type=Path, default=ROOT / ".venv-peers")
-    parser.add_argument("--out", type=Path, default=ROOT / "docs" / "benchmarks")
+    parser.add_argument("--out", type=Path, default=Path(__file__).parent)
     parser.add_argument("--nodes", type=int, default=512, help="at least 256")
     parser.add_argument("--rounds", type=int, default=7)
     parser.add_argument("--limit", type=float, default=120, help="seconds for one solve")

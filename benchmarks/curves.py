@@ -1,4 +1,4 @@
-"""Time complete curves of restitution; writes docs/benchmarks/curves.md.
+"""Time complete curves of restitution; writes benchmarks/curves.md.
 
 Times are also given in the unit U of `unit.py`, so that machines can be compared. `--repeats 1` is
 quicker.
@@ -39,7 +39,7 @@ from restitution.case.case_file import read_case
 
 ROOT = Path(__file__).parents[1]
 EXAMPLE = ROOT / "benchmarks" / "steel.toml"
-OUT = ROOT / "docs" / "benchmarks" / "curves.md"
+OUT = Path(__file__).with_suffix(".md")
 FIG_10 = files("restitution.reproduce") / "studies" / "roughness.toml"
 NODES = 512
 STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25)

@@ -1,6 +1,6 @@
 """Time of a curve with a growing pressure bound, relative to the time with a constant bound.
 
-Writes docs/benchmarks/growing-bound.md. `--repeats 1` is quicker.
+Writes benchmarks/growing-bound.md. `--repeats 1` is quicker.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from restitution import (  # noqa: E402
 )
 
 Curve = Callable[[Surface, dict[str, float]], None]
-OUT = Path(__file__).parents[1] / "docs" / "benchmarks" / "growing-bound.md"
+OUT = Path(__file__).with_name("growing-bound.md")
 NODES = 512
 GRID = Grid((NODES, NODES), (0.25e-6, 0.25e-6))
 STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25)

@@ -1,6 +1,6 @@
 """Time from a slider to the redrawn curve, and the memory after many changes, in Chromium.
 
-Writes docs/benchmarks/page.md. It needs Chromium and the extras `app` and `test`.
+Writes benchmarks/page.md. It needs Chromium and the extras `app` and `test`.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from playwright.sync_api import Page, expect, sync_playwright
 from unit import machine, today
 
 HERE = Path(__file__).parent
-OUT = HERE.parent / "docs" / "benchmarks" / "page.md"
+OUT = HERE / "page.md"
 CHROMIUM = "/usr/bin/chromium"
 CHANGES, MANY = 50, 200
 CASES = {
@@ -53,7 +53,7 @@ parts of the time.
 {rows}
 
 The upper limit ("bound") of the contact pressure either is constant or grows with deformation. With
-the growing bound each depth takes two solutions; see [their time](growing-bound.md).
+the growing bound each depth takes two solutions; see `growing-bound.md`.
 
 Memory of the server and its processes, with the constant bound: {before:.0f} MiB after {changes}
 changes, and {after:.0f} MiB after {many} more.

@@ -1,7 +1,7 @@
 """Time this program beside Tamaas and ContactMechanics on periodic contacts under a given pressure.
 
 `make bench-periodic` makes an environment for each program and runs this script. The script writes
-periodic.csv and periodic.md into docs/benchmarks. Times are measured as in `compare.py`.
+periodic.csv and periodic.md beside this file. Times are measured as in `compare.py`.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ import os
 import tempfile
 from pathlib import Path
 
-from compare import OURS, PROGRAMS, RESIDUAL, ROOT, Worker, compare, power, short
 from problems import SPACING, Problem
 from unit import machine, today
 
+from compare import OURS, PROGRAMS, RESIDUAL, ROOT, Worker, compare, power, short
 from restitution import Body, Contact, Grid, Pair, generate_surface, solve_at_pressure
 from restitution.surfaces import rms_slope
 
@@ -38,9 +38,9 @@ REPORT = """\
 {versions}. {threads}
 
 This page compares the time of restitution with that of Tamaas and ContactMechanics for the same
-[periodic contacts](../periodic.md). Each ratio is the time of the other program divided by the time
-of restitution in the same round. `make bench-periodic` writes this page;
-[periodic.csv](periodic.csv) contains all columns.
+[periodic contacts](../docs/periodic.md). Each ratio is the time of the other program divided by
+the time of restitution in the same round. `make bench-periodic` writes this page;
+`periodic.csv` contains all columns.
 
 {table}
 
@@ -59,7 +59,7 @@ prescribed force. "nodes" is the number of nodes in contact minus the number fou
 `restitution` always meets the prescribed pressure to 1e-8. It therefore solves the contact more
 accurately than its tolerance demands, and a loose tolerance suffices (column "own tolerance"). The
 programs take turns {rounds} times, in an order that is reversed each time; ratios are medians
-(smallest–largest). [Beside other programs](peers.md) states what a time includes.
+(smallest–largest). `peers.md` states what a time includes.
 
 Tamaas solves elastic contact by `PolonskyKeerRey` and plastic contact by `KatoSaturated`.
 ContactMechanics solves them by `minimize_proxy` with `external_force`. A program that needs more
@@ -128,7 +128,7 @@ def main() -> None:
     """Run all problems and write the report."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--environments", type=Path, default=ROOT / ".venv-peers")
-    parser.add_argument("--out", type=Path, default=ROOT / "docs" / "benchmarks")
+    parser.add_argument("--out", type=Path, default=Path(__file__).parent)
     parser.add_argument("--nodes", type=int, default=512)
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--limit", type=float, default=60, help="seconds for one solve")

@@ -2,7 +2,7 @@
 
 The contact is the same at every size: a sphere on a band-limited surface of 64 µm, which is made on
 256² nodes and refined by zero padding its spectrum. Writes scaling.csv, scaling.md and scaling.png
-into docs/benchmarks; `--largest 8192` adds one size.
+beside this file; `--largest 8192` adds one size.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from unit import machine, measure_unit, today
 
 from restitution import Body, Contact, Grid, Pair, Surface, generate_surface, operator_cache, solve
 
-OUT = Path(__file__).parents[1] / "docs" / "benchmarks"
+OUT = Path(__file__).parent
 COARSEST = 256
 DOMAIN = 64e-6
 STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25)
@@ -37,7 +37,7 @@ REPORT = """\
 # Time and memory against size
 
 {date}, {machine}. Written by `make bench`.
-All columns are in [scaling.csv](scaling.csv).
+All columns are in `scaling.csv`.
 
 This page shows how time and memory grow with the size of the grid. Each row is one contact of a
 sphere (R* = 250 µm, E* = 112 GPa), solved with a tolerance of 1e-8. All rows have the same rough

@@ -1,6 +1,6 @@
 """Time to import the package and to print its help, relative to numpy and scipy.fft.
 
-Writes docs/benchmarks/start.md. The processes take turns; times are those of whole processes.
+Writes benchmarks/start.md. The processes take turns; times are those of whole processes.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from pathlib import Path
 
 from unit import machine, seconds, today
 
-OUT = Path(__file__).parents[1] / "docs" / "benchmarks" / "start.md"
+OUT = Path(__file__).with_suffix(".md")
 TURNS = 15
 BASE = "numpy and scipy.fft"
 COMMANDS = {

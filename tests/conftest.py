@@ -15,8 +15,8 @@ import pytest
 from hypothesis import settings
 
 import instrument_formats
-from restitution.laws.force_law_fits import fitted_laws
-from restitution.laws.law import Law, Point
+from restitution.dem.fits import fitted_laws
+from restitution.laws.law import Law, LawPoint
 from restitution.laws.particle import Particle
 from restitution.numerics import kernels
 
@@ -155,7 +155,7 @@ def _law_of(first=GLASS, second=GLASS, at=1.0, **changes):
     V = np.geomspace(0.01, 10, 13)
     e = np.maximum(0.95 - 0.65 * (np.log10(V * at) + 2) / 3, 0.1)
     points = tuple(
-        Point(
+        LawPoint(
             velocity=v,
             restitution=float(c),
             error=0.004,

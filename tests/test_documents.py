@@ -34,7 +34,6 @@ NOT_RUN = {
     ("docs/developers/recipes.md", "python tests/document_blocks.py docs/developers/recipes.md"): (
         "changes this page"
     ),
-    ("docs/mutation.md", "make mutation"): "takes ten minutes and more",
     ("docs/dem.md", "python match_velocity.py --wall 2 z 0.0 -- lmp -in my.in"): (
         "needs a simulation of its own"
     ),
@@ -240,8 +239,8 @@ def test_the_way_to_a_dem_code_gives_the_table_of_its_page(tmp_path):
 
 
 # The CHANGELOG tells of names that are gone.
-DOCUMENTS = PAGES
-FOLDERS = "src|tests|docs|examples|validation|benchmarks"
+DOCUMENTS = [*PAGES, *ROOT.glob("benchmarks/*.md"), *ROOT.glob("evidence/*/*.md")]
+FOLDERS = "src|tests|docs|examples|evidence|benchmarks"
 
 
 def code(document):

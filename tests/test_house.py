@@ -90,7 +90,7 @@ def test_lines_are_counted():
 
 def test_every_error_bar_of_the_mutation_tests_stands_once_in_the_source():
     """Otherwise `make mutation` would stop at it, or test nothing."""
-    folder = ROOT / "mutation"
+    folder = ROOT / "evidence" / "mutation"
     tree = ast.parse((folder / "error_bars.py").read_text())
     (tests,) = (
         ast.literal_eval(node.value)

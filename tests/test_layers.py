@@ -22,6 +22,8 @@ ROOMS = (
     "case",
     "results",
     "laws",
+    "impacts",
+    "compare",
     "runs",
     "sweeps",
     "mixtures",

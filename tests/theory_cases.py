@@ -3,7 +3,7 @@
 import numpy as np
 
 from restitution.case.case_file import parse_case
-from restitution.laws import theories
+from restitution.compare import theories
 
 SPHERE = 'radius = "1 mm"\nyoungs_modulus = "70 GPa"\npoissons_ratio = 0.25\n'
 WALL = 'radius = "flat"\nyoungs_modulus = "200 GPa"\npoissons_ratio = 0.3\n'

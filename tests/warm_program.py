@@ -23,7 +23,7 @@ IMPORTED = (
     "restitution.plots.static",
     "restitution.plots.run",
     "restitution.pages.run",
-    "restitution.laws.force_law_fits",
+    "restitution.dem.fits",
     "restitution.dem.export",
     "netCDF4",
     "distributed",  # xarray imports it to write a file

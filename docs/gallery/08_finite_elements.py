@@ -4,8 +4,8 @@ Validation against finite elements
 
 This figure compares COR of three models of plasticity with COR of two reference computations:
 axisymmetric finite elements (smooth spheres and spheres with waves), and a rough contact in 3D. The
-data are from ``validation/models.csv``. If a yield strength is given, the program uses the model
-``expanding-cavity``.
+data are from ``evidence/plasticity_models``. If a yield strength is given, the program uses the
+model ``expanding-cavity``.
 """
 
 import csv
@@ -16,9 +16,9 @@ import matplotlib.pyplot as plt
 
 
 def table():
-    """The rows of validation/models.csv, found in the current folder or a folder above it."""
+    """The rows of models.csv, in the current folder or a folder above it."""
     here = Path.cwd().resolve()
-    root = next(folder for folder in (here, *here.parents) if (folder / "validation").is_dir())
+    root = next(folder for folder in (here, *here.parents) if (folder / "evidence").is_dir())
     with open(root / "validation" / "models.csv") as file:
         return list(csv.DictReader(file))
 

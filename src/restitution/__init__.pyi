@@ -21,7 +21,7 @@ from .contact.prescribed_pressure import solve_at_pressure as solve_at_pressure
 from .contact.prescribed_velocity import solve_at_velocity as solve_at_velocity
 from .contact.state import State as State
 from .errors import RestitutionError as RestitutionError
-from .laws.oblique import ObliqueCollision as ObliqueCollision
+from .impacts.oblique import ObliqueCollision as ObliqueCollision
 from .numerics.convolution.cache import operator_cache as operator_cache
 from .numerics.convolution.device import on_device as on_device
 from .numerics.grid import Grid as Grid

@@ -14,9 +14,9 @@ from restitution.errors import CaseError, OutputError, not_one_of
 
 if TYPE_CHECKING:
     from restitution.case.case import Case
+    from restitution.impacts.oblique import ObliqueCollision
+    from restitution.impacts.time_integration import StoredForce
     from restitution.laws.law import Law
-    from restitution.laws.oblique import ObliqueCollision
-    from restitution.laws.time_integration import StoredForce
     from restitution.results.periodic import PeriodicResults
     from restitution.results.reader import RunResults, StudyResults
 
@@ -150,14 +150,14 @@ def law_of(results: Folder | RunResults) -> Law:
         CaseError: The results have no impact velocities, for example because a density is missing.
         OutputError: The folder does not hold results, or a file is damaged.
     """
-    from restitution.laws.from_results import law_of as law_from
+    from restitution.dem.fits import fit_law
     from restitution.laws.law_files import LAW_FILE, read_law
     from restitution.results.reader import RunResults
 
     if isinstance(results, RunResults):
-        return law_from(results.folder or results)
+        return fit_law(results.folder or results)
     folder = Path(results)
-    return read_law(folder) if (folder / LAW_FILE).is_file() else law_from(folder)
+    return read_law(folder) if (folder / LAW_FILE).is_file() else fit_law(folder)
 
 
 @typed
@@ -176,7 +176,7 @@ def collide_obliquely(
 
     Args:
         results: Results of a run of one surface, their folder, or a force law
-            (`restitution.laws.time_integration.StoredForce`).
+            (`restitution.impacts.time_integration.StoredForce`).
         velocity: Relative velocity of the centres, such as "0.5 m/s", or a number (m/s).
         angle: Angle of impact from the normal, such as "30 deg", or a number (rad). It must be at
             least 0 and less than 90 degrees.
@@ -196,10 +196,10 @@ def collide_obliquely(
         OutputError: The folder does not hold results with unloading curves, or a file is damaged.
     """
     from restitution.case.quantities import read_impact_angle, read_quantity
+    from restitution.impacts.oblique import collide_obliquely as collide
+    from restitution.impacts.oblique import oblique_force
+    from restitution.impacts.time_integration import StoredForce
     from restitution.laws.law import velocity_of
-    from restitution.laws.oblique import collide_obliquely as collide
-    from restitution.laws.oblique import oblique_force
-    from restitution.laws.time_integration import StoredForce
     from restitution.results.reader import RunResults, read_run
 
     if isinstance(results, StoredForce):

@@ -11,7 +11,7 @@ import pytest
 
 from restitution.cli import prepare
 from restitution.errors import CaseError
-from restitution.laws import time_integration
+from restitution.impacts import time_integration
 
 _PR_CAPBSET_DROP = 24
 _CAP_DAC_OVERRIDE, _CAP_DAC_READ_SEARCH = 1, 2

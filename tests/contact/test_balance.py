@@ -37,7 +37,7 @@ def sphere(offset, deepest, nodes=8):
     ("offset", "depth"), [((0, 0), 0.018), ((0, 0), 3.0), ((0.5, 0.5), 0.6), ((0.37, 0.12), 5.0)]
 )
 def test_pull_off_is_that_of_jkr_whatever_the_steps(offset, depth):
-    """Worst of 120 in docs/studies/pull_off.csv: 3.6 %; by other steps 0.5 % in the rms."""
+    """Worst of 120 in evidence/pull_off/pull_off.csv: 3.6 %; by other steps 0.5 % in the rms."""
     contact, later = sphere(offset, max(depth, 1.5) * BREAK)
     state = solve(contact, max(depth * BREAK - later, 1e-13))
     once = step(state, -0.1 * BREAK - later, residual=1e-4)

@@ -93,7 +93,7 @@ def test_hardening_adds_the_flow_stress_at_tabors_strain():
 
 
 # ω: COR, force (N) and contact area (m²) of finite elements for S_y/E* = 0.001
-# (validation/finite_elements/data/smooth_0.001.json); normalised, they hold for every S_y.
+# (evidence/finite_elements/data/smooth_0.001.json); normalised, they hold for every S_y.
 FINITE_ELEMENTS = {
     2: (0.9658152, 0.003482807, 1.056402e-11),
     8: (0.8089779, 0.02371111, 5.037909e-11),

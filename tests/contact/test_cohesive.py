@@ -59,7 +59,7 @@ def sphere(tabor, depth, *, cells=0.3, rough=0.0, seed=0, **options):
 
 
 def reference(tabor):
-    file = Path(__file__).parents[2] / "docs/studies/cohesive_reference.csv"
+    file = Path(__file__).parents[2] / "evidence/cohesive/cohesive_reference.csv"
     with open(file) as lines:
         rows = [row for row in csv.DictReader(lines) if float(row["tabor_parameter"]) == tabor]
     return {key: float(value) for key, value in rows[-1].items()}

@@ -20,7 +20,7 @@ from restitution.contact.model_error import (
 )
 from tolerance import approx
 
-TABLE = Path(__file__).parents[2] / "validation" / "models.csv"
+TABLE = Path(__file__).parents[2] / "evidence" / "plasticity_models" / "models.csv"
 BODY = Body(1e-3, 420e9, 0.3)
 PAIR = Pair(BODY, BODY)
 GRID = Grid((64, 64), (2e-6, 2e-6))
@@ -60,7 +60,7 @@ def test_it_is_at_most_the_largest_possible_error():
         assert model_error(state, e) <= max(e, 1 - e)
 
 
-SPHERES = Path(__file__).parents[2] / "docs" / "studies" / "cohesive_reference.csv"
+SPHERES = Path(__file__).parents[2] / "evidence" / "cohesive" / "cohesive_reference.csv"
 
 
 def test_the_hysteresis_without_range_is_that_of_the_reference():
@@ -94,7 +94,7 @@ def test_it_covers_the_range_that_jkr_neglects(tabor):
 
 
 needs_references = pytest.mark.skipif(
-    not TABLE.is_file(), reason="validation/ is not beside the package"
+    not TABLE.is_file(), reason="evidence/ is not beside the package"
 )
 
 

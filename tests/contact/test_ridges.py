@@ -68,7 +68,7 @@ def test_the_bound_takes_the_depth_of_each_asperity():
 
 
 def test_a_ring_that_has_just_come_into_contact_is_that_of_finite_elements():
-    """A = 0.1 µm, λ = 4 µm, ω = 0.5, extrapolated (validation/finite_elements)."""
+    """A = 0.1 µm, λ = 4 µm, ω = 0.5, extrapolated (evidence/finite_elements)."""
     contact, depth = waves(1e-7, nodes=120), 0.5 * FIRST
     *_, state = loading_path(contact, np.geomspace(1e-10, depth, 25))
     assert collide(state).restitution == approx(0.89814, rel=0.04)

@@ -14,12 +14,12 @@ from restitution.contact.model_error import depth_difference, largest_difference
 from restitution.errors import CaseError
 from tolerance import approx
 
-TABLE = Path(__file__).parents[2] / "validation" / "bodies.csv"
+TABLE = Path(__file__).parents[2] / "evidence" / "plasticity_models" / "bodies.csv"
 R, E = 1e-3, 210e9
 BALL, WALL = Body(R, E, 0.3), Body(math.inf, E, 0.3)
 YIELDS = {"sphere": "first", "flat": "second", "both": "both"}
 needs_references = pytest.mark.skipif(
-    not TABLE.is_file(), reason="validation/ is not beside the package"
+    not TABLE.is_file(), reason="evidence/ is not beside the package"
 )
 
 

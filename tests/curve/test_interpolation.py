@@ -17,7 +17,7 @@ from restitution.curve.interpolation import RatioCurve
 from restitution.theory import ThorntonNing
 from tolerance import approx
 
-BETWEEN = Path(__file__).parents[2] / "docs" / "studies" / "between_velocities.csv"
+BETWEEN = Path(__file__).parents[2] / "evidence" / "dem" / "between_velocities.csv"
 R, E_STAR, P_Y, MASS = 250e-6, 112e9, 750e6, 2e-6
 
 
@@ -60,7 +60,7 @@ def test_the_error_holds_for_curves_that_scatter_as_rough_ones_do(seed):
 
 
 def test_the_error_of_the_example_holds_between_its_velocities_and_close_to_them(law):
-    """Results of `docs/studies/dem.py` for four rough surfaces at 17 velocities."""
+    """Results of `evidence/dem/dem.py` for four rough surfaces at 17 velocities."""
     with open(BETWEEN, newline="") as file:
         rows = [{key: float(text) for key, text in row.items()} for row in csv.DictReader(file)]
     held = {}

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from restitution.dem.adhesion import pull_off_force
 from restitution.dem.export import CODES, export
+from restitution.dem.pair import pull_off_force
 from tolerance import approx
 
 

@@ -14,13 +14,13 @@ from restitution.dem.codes import lammps as to_lammps
 from restitution.dem.codes import liggghts as to_liggghts
 from restitution.dem.codes import yade as to_yade
 from restitution.dem.export import CODES, export
-from restitution.dem.friction import STIFFNESS_SHARE
+from restitution.dem.pair import STIFFNESS_SHARE
 from restitution.dem.pair_table import pair_table
-from restitution.laws.oblique import collide_obliquely
+from restitution.impacts.oblique import collide_obliquely
 from restitution.laws.particle import Particle
 from tolerance import approx
 
-STUDIES = Path(__file__).parents[2] / "docs" / "studies"
+STUDIES = Path(__file__).parents[2] / "evidence"
 MU = 0.15
 ANGLES = (5.0, 12.0, 20.0, 30.0, 60.0)  # sticking at first, partial slip, and full slip
 SMOOTH = Particle(
@@ -150,13 +150,13 @@ def test_without_friction_the_tangential_lines_are_those_of_before(law):
     assert "tangential mindlin NULL 1.0 0.5 damping coeff_restitution" in text
 
 
-def stored(name):
-    with open(STUDIES / name, newline="") as file:
+def stored(name, folder=None):
+    with open(STUDIES / (folder or name) / f"{name}.csv", newline="") as file:
         return list(csv.DictReader(file))
 
 
 def test_the_share_of_the_stiffness_is_the_best_of_those_tried():
-    rows = [row for row in stored("oblique_stiffness.csv") if not row["yield_pressure_Pa"]]
+    rows = [row for row in stored("oblique_stiffness") if not row["yield_pressure_Pa"]]
     worst = {}
     for row in rows:
         difference = float(row["largest_difference"])
@@ -171,7 +171,7 @@ def test_the_codes_are_as_far_from_the_measurement_as_the_page_says():
     measured = {1.84: 0.79344, 3.703: 0.74533, 9.496: 0.67257, 20.012: 0.59691, 30.127: 0.68756}
     pair = Pair(Body(2.5e-3, 380e9, 0.23, 4000), Body(math.inf, 70e9, 0.22))
     force, worst = elastic(pair, 3.9), {}
-    for row in stored("oblique_codes.csv"):
+    for row in stored("oblique_codes", "oblique"):
         angle, e_t = float(row["angle_deg"]), float(row["tangential_restitution"])
         if row["code"] == "law":
             found = collide_obliquely(force, 3.9, math.radians(angle), 0.092)

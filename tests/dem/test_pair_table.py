@@ -88,7 +88,7 @@ def test_different_laws_of_one_pair_are_refused(own):
 
 
 def test_two_equal_spheres_with_own_tables_get_a_fitted_mdr(own):
-    from restitution.laws.force_law_fits import fitted_laws
+    from restitution.dem.fits import fitted_laws
 
     aa = own("aa")
     twice = replace(aa, second=replace(aa.second, name="second"), yield_pressure=560e6)

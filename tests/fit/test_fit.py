@@ -1,13 +1,13 @@
 """Parameters are recovered from data of known ones, and what the data do not tell is said."""
 
 import math
-import sys
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from evidence.fit import fit_model_error
 from restitution.case.case_file import parse_case
 from restitution.errors import CaseError
 from restitution.fit.findings import combination, findings, identifiable
@@ -16,9 +16,6 @@ from restitution.fit.measured import Measured
 from restitution.fit.uncertainty import MODEL_SHARES
 from restitution.theory import ThorntonNing
 from tolerance import approx
-
-sys.path.append(str(Path(__file__).parents[2] / "docs" / "studies"))
-import fit_model_error
 
 
 def values(found):

@@ -17,7 +17,7 @@ from pathlib import Path
 import pytest
 
 from restitution.case.case_file import parse_case
-from restitution.laws.from_results import law_of
+from restitution.dem.fits import fit_law
 from restitution.laws.law_files import write_law
 from restitution.results.writer import ResultsFolder
 from restitution.runs.convergence import run_convergence
@@ -64,7 +64,7 @@ def whole(tiny_case, tmp_path_factory):
     (at / "study.toml").write_text(study.text)
     with in_threads(None) as there:
         run_study(study, at, StudyFolder(at / "study", study, resume=False), there)
-    write_law(law_of(at / "run"), at / "law")
+    write_law(fit_law(at / "run"), at / "law")
     return at
 
 
@@ -130,7 +130,7 @@ def test_damaged_results(number, whole, tmp_path, cli, monkeypatch):
     for path in (*damaged.glob("report.html"), *tmp_path.glob("out/**/*.csv")):
         assert_shares(path)
     if checked and (tmp_path / "out" / "law").exists():
-        write_law(law_of(whole / kind), tmp_path / "expected")
+        write_law(fit_law(whole / kind), tmp_path / "expected")
         assert_same(tmp_path / "out/law/table.csv", tmp_path / "expected/table.csv", checked)
 
 

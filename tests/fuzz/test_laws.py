@@ -16,10 +16,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from restitution.dem.export import CODES, export
+from restitution.dem.fits import fitted_laws
 from restitution.errors import DomainError, RestitutionError
 from restitution.laws.compact_fit import compact_fit
-from restitution.laws.force_law_fits import fitted_laws
-from restitution.laws.law import Law, Point
+from restitution.laws.law import Law, LawPoint
 from restitution.laws.law_files import law_rows
 from restitution.laws.particle import Particle
 from restitution.plots.law import law_figure
@@ -64,7 +64,7 @@ ratios = st.one_of(st.floats(-2, 1), st.sampled_from([-1.0, 0.0, 1.0, 1 - 1e-9, 
 @st.composite
 def one_point(draw, velocity, mass):
     ratio = draw(ratios)
-    return Point(
+    return LawPoint(
         velocity=velocity,
         restitution=math.sqrt(min(max(ratio, 0.0), 1.0)),
         error=draw(st.floats(0, 0.3)),

@@ -10,10 +10,10 @@ import pytest
 
 from points import mean_point, point
 from restitution.case.case_file import parse_case
+from restitution.dem.fits import NAMES, fit_law
 from restitution.errors import CaseError, DomainError, OutputError
 from restitution.laws import from_results
-from restitution.laws.force_law_fits import NAMES
-from restitution.laws.from_results import bare_law, law_of
+from restitution.laws.from_results import bare_law
 from restitution.results.checksums import CHECKSUMS
 from restitution.results.writer import ResultsFolder
 from restitution.runs.ensemble import run_realisations
@@ -141,7 +141,7 @@ def test_the_ratio_of_a_mean_is_that_of_its_restitution_unless_it_sticks():
 
 def test_both_fits_are_made_only_where_they_are_asked_for(run):
     began = []
-    law = law_of(run, lambda *begun: began.append(begun))
+    law = fit_law(run, lambda *begun: began.append(begun))
     assert replace(law, fit=None, laws=()) == bare_law(run)
     assert [name for name, *_ in began] == list(NAMES)
     assert [each.name for each in law.laws] == list(NAMES)

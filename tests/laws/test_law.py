@@ -9,10 +9,10 @@ from dataclasses import asdict, replace
 import numpy as np
 import pytest
 
+from restitution.dem.fits import fit_law, fitted_laws
 from restitution.errors import CaseError, DomainError, OutputError
 from restitution.laws.compact_fit import compact_fit
-from restitution.laws.force_law_fits import fitted_laws
-from restitution.laws.from_results import bare_law, law_of
+from restitution.laws.from_results import bare_law
 from restitution.laws.law import STORED_LAW
 from restitution.laws.law_files import read_law, write_law
 from tolerance import approx
@@ -127,7 +127,7 @@ def test_nothing_is_extrapolated(rough, factor):
 
 
 def test_a_law_is_read_as_it_was_written(rough, tmp_path):
-    law = law_of(rough)
+    law = fit_law(rough)
     names = {path.name for path in write_law(law, tmp_path / "law")}
     assert names == {"law.json", "table.csv", "laws.csv"}
     assert read_law(tmp_path / "law") == law
@@ -151,13 +151,13 @@ def test_what_is_no_law(tmp_path, rough):
     with pytest.raises(CaseError, match="is not a law of this version"):
         read_law(tmp_path)
     with pytest.raises(OutputError, match="is already a law"):
-        law_of(tmp_path)
+        fit_law(tmp_path)
     (tmp_path / "law.json").unlink()
     with pytest.raises(OutputError, match="holds no results of a run"):
-        law_of(tmp_path)
+        fit_law(tmp_path)
     (tmp_path / "study.toml").write_text("")
     with pytest.raises(OutputError, match="is a study of many cases"):
-        law_of(tmp_path)
+        fit_law(tmp_path)
 
 
 def test_without_density_there_is_no_law(runs):
@@ -165,7 +165,7 @@ def test_without_density_there_is_no_law(runs):
         'density = "7850 kg/m^3"\n', ""
     )
     with pytest.raises(CaseError, match="gives no density"):
-        law_of(runs(text))
+        fit_law(runs(text))
 
 
 def test_unresolved_points_are_kept_but_not_fitted(runs):
@@ -174,7 +174,7 @@ def test_unresolved_points_are_kept_but_not_fitted(runs):
         '[roughness]\nkind = "gaussian"\nrms = "0.3 um"\ncorrelation_length = "2 um"\nseed = 1\n'
     )
     depths = '[indentation]\nfrom = "5 nm"\nto = "3 um"\nsteps = 9\n'
-    law = law_of(runs(HEAD + PLASTIC + roughness + depths + GRID))
+    law = fit_law(runs(HEAD + PLASTIC + roughness + depths + GRID))
     unresolved = [point for point in law.points if not point.resolved]
     assert unresolved
     assert not law.at(unresolved[0].velocity).resolved
@@ -184,7 +184,7 @@ def test_unresolved_points_are_kept_but_not_fitted(runs):
 
 def test_the_fitted_yield_pressure_is_that_which_went_in(truncated):
     """Thornton and Ning's force is exact for truncated pressure, their unloading is not."""
-    laws = {each.name: each for each in law_of(truncated).laws}
+    laws = {each.name: each for each in fit_law(truncated).laws}
     by_force = laws["thornton-ning-force"].parameters["yield_pressure_Pa"]
     assert by_force == approx(750e6, rel=0.01)
     by_restitution = laws["thornton-ning"].parameters["yield_pressure_Pa"]
@@ -193,7 +193,7 @@ def test_the_fitted_yield_pressure_is_that_which_went_in(truncated):
 
 
 def test_every_fitted_law_is_judged_by_its_own_numbers(truncated):
-    law = law_of(truncated)
+    law = fit_law(truncated)
     assert [each.name for each in law.laws] == [
         "constant",
         "thornton-ning-force",
@@ -219,7 +219,7 @@ def test_every_fitted_law_is_judged_by_its_own_numbers(truncated):
 
 def test_an_elastic_pair_has_nothing_to_fit(runs):
     elastic = '[interface]\nyield_pressure = "elastic"\n'
-    law = law_of(runs(HEAD + elastic + '[impact]\nvelocity = ["0.1 m/s", "0.3 m/s"]\n' + GRID))
+    law = fit_law(runs(HEAD + elastic + '[impact]\nvelocity = ["0.1 m/s", "0.3 m/s"]\n' + GRID))
     assert law.laws == ()
     assert law.column("restitution") == approx(1.0, abs=1e-6)
     assert law.yield_velocity is None

@@ -3,9 +3,8 @@ from pathlib import Path
 
 import pytest
 
-from restitution.mixtures.mixture import run_mixture
+from restitution.mixtures.mixture import open_mixture_folder, run_mixture, write_mixture
 from restitution.mixtures.mixture_file import parse_mixture
-from restitution.mixtures.mixture_folder import open_mixture_folder, write_mixture
 from restitution.sweeps.executors import chosen_workers
 
 MIXTURE = """

@@ -14,12 +14,12 @@ from restitution.laws.from_results import bare_law
 from restitution.laws.law_files import read_laws
 from restitution.mixtures.family import families
 from restitution.mixtures.mixture_file import parse_mixture
-from restitution.mixtures.scaling import Computed
+from restitution.mixtures.scaling import FamilyLaws
 from restitution.results.writer import ResultsFolder
 from restitution.runs.run import run_case
 from tolerance import approx
 
-STUDIES = Path(__file__).parents[2] / "docs" / "studies"
+STUDIES = Path(__file__).parents[2] / "evidence" / "mixture"
 
 
 def law_at(family, radius, folder):
@@ -50,16 +50,16 @@ def test_smooth_spheres_obey_the_scaling_law(smooth, tmp_path):
 
 def test_unlike_spheres_take_their_velocities_from_equal_work(smooth, tmp_path):
     family = families(smooth)[0]
-    meeting = next(
+    pair = next(
         each
-        for each in family.meetings
+        for each in family.pairs
         if (each.first.radius, each.second.radius) == approx((50e-6, 150e-6), rel=1e-9)
     )
-    computed = Computed(family, (law_at(family, meeting.radius, tmp_path),))
-    law = computed.law(meeting)
+    computed = FamilyLaws(family, (law_at(family, pair.radius, tmp_path),))
+    law = computed.law(pair)
     (node,) = computed.laws
     for point in law.points:
-        assert point.loading_work == approx(0.5 * meeting.mass * point.velocity**2, rel=1e-12)
+        assert point.loading_work == approx(0.5 * pair.mass * point.velocity**2, rel=1e-12)
         same_work = np.sqrt(2 * point.loading_work / node.mass)
         assert point.ratio == approx(node.curve().at(same_work), rel=1e-9)
         forces = np.log([node.column("velocity"), node.column("force")])
@@ -69,13 +69,13 @@ def test_unlike_spheres_take_their_velocities_from_equal_work(smooth, tmp_path):
 def test_the_interpolation_error_vanishes_at_computed_radii_only(mixture_text, tmp_path):
     family = families(parse_mixture(mixture_text()))[0]
     laws = tuple(law_at(family, radius, tmp_path) for radius in (25e-6, 40e-6, 75e-6))
-    computed = Computed(family, laws)
-    errors = {meeting.radius: computed.interpolation_errors(meeting) for meeting in family.meetings}
+    computed = FamilyLaws(family, laws)
+    errors = {pair.radius: computed.interpolation_errors(pair) for pair in family.pairs}
     assert errors[family.radii[0]] == [0.0, 0.0, 0.0]
     between = next(radius for radius in family.radii if not computed.has(radius))
     assert min(errors[between]) > 0
-    meeting = next(each for each in family.meetings if each.radius == between)
-    law, direct = computed.law(meeting), law_at(family, between, tmp_path)
+    pair = next(each for each in family.pairs if each.radius == between)
+    law, direct = computed.law(pair), law_at(family, between, tmp_path)
     for point in law.points:
         same_work = np.sqrt(2 * point.loading_work / direct.mass)
         assert abs(point.restitution - direct.at(same_work).restitution) < point.error
@@ -192,30 +192,30 @@ def test_the_error_of_an_interpolated_law_is_the_sum_of_its_parts(mixture_text, 
     """Errors of the two computed laws beside it, and of the interpolation at three velocities."""
     family = families(parse_mixture(mixture_text()))[0]
     laws = tuple(law_at(family, radius, tmp_path) for radius in (25e-6, 40e-6, 75e-6))
-    computed = Computed(family, laws)
-    meeting = next(each for each in family.meetings if not computed.has(each.radius))
+    computed = FamilyLaws(family, laws)
+    pair = next(each for each in family.pairs if not computed.has(each.radius))
     curves = [
         RatioCurve(
             np.array([law.radius for law in laws]),
-            np.array([law.curve().at(scaled(law, V, meeting)) for law in laws]),
+            np.array([law.curve().at(scaled(law, V, pair)) for law in laws]),
             adhesive=False,
         )
         for V in family.mixture.velocities
     ]
-    points = computed.law(meeting).points
+    points = computed.law(pair).points
     assert len(points) == len(curves) > 2
     for k, (point, V) in enumerate(zip(points, family.mixture.velocities, strict=True)):
-        after, t = curves[k].interval(meeting.radius)
-        beside = [law.at(scaled(law, V, meeting)).error for law in laws[after - 1 : after + 1]]
-        ratio = curves[k].at(meeting.radius)
-        off = max(curve.error(meeting.radius) for curve in curves[max(k - 1, 0) : k + 2])
+        after, t = curves[k].interval(pair.radius)
+        beside = [law.at(scaled(law, V, pair)).error for law in laws[after - 1 : after + 1]]
+        ratio = curves[k].at(pair.radius)
+        off = max(curve.error(pair.radius) for curve in curves[max(k - 1, 0) : k + 2])
         ends = np.sqrt(np.clip([ratio - off, ratio, ratio + off], 0, 1))
         between = np.diff(ends).max()
         assert point.error == approx((1 - t) * beside[0] + t * beside[1] + between, rel=1e-9)
-        assert computed.interpolation_errors(meeting)[k] == approx(between, rel=1e-9)
+        assert computed.interpolation_errors(pair)[k] == approx(between, rel=1e-9)
 
 
-def scaled(law, V, meeting):
+def scaled(law, V, pair):
     """The velocity at which `law` has the work over R*³ of the pair, within its range."""
-    velocity = V * np.sqrt(meeting.mass / meeting.radius**3 / (law.mass / law.radius**3))
+    velocity = V * np.sqrt(pair.mass / pair.radius**3 / (law.mass / law.radius**3))
     return min(max(velocity, law.lowest), law.highest)

@@ -14,7 +14,7 @@ RADII = '["50 um", "80 um", "150 um"]'
 
 def test_every_pair_is_there_once(mixture_text):
     found = families(parse_mixture(mixture_text()))
-    counts = {family.name: len(family.meetings) for family in found}
+    counts = {family.name: len(family.pairs) for family in found}
     assert counts == {
         "alu+alu": 6,
         "alu+pmma": 3,

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from restitution.dem.fits import fitted_laws
 from restitution.laws.compact_fit import compact_fit
-from restitution.laws.force_law_fits import fitted_laws
 from restitution.plots.law import law_figure
 from restitution.plots.static import draw
 

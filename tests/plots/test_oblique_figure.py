@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import restitution as rs
-from restitution.laws.full_slip import full_slip_angle
+from restitution.impacts.oblique import full_slip_angle
 from restitution.pages.run import write_run_page
 from restitution.plots.figure import Line, Mark, Points
 from restitution.plots.oblique import oblique_figure

@@ -3,8 +3,8 @@
 import numpy as np
 
 from restitution.case.case_file import parse_case
-from restitution.laws import theories as room
-from restitution.laws.closed_forms import FORMS
+from restitution.compare import theories as room
+from restitution.compare.closed_forms import FORMS
 from restitution.plots import law as plotted
 from restitution.plots.law import LAW_LINES
 from restitution.plots.static import draw

@@ -5,7 +5,7 @@ import json
 import pytest
 import xarray as xr
 
-from restitution.sweeps.coordinates import coordinate
+from restitution.sweeps.sweep import coordinate
 from tolerance import approx
 
 

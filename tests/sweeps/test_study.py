@@ -19,11 +19,10 @@ import xarray as xr
 
 from restitution.errors import OutputError
 from restitution.sweeps import scheduler as module
-from restitution.sweeps.executors import Workers
+from restitution.sweeps.executors import Outcome, Workers
 from restitution.sweeps.scheduler import Tally, _compute_all, run_study
 from restitution.sweeps.study_folder import StudyFolder
 from restitution.sweeps.sweep import parse_study
-from restitution.sweeps.task import Outcome
 
 SWEEP = """
 [sweep]

@@ -11,7 +11,7 @@ from restitution.theory import LennardJones, MaugisDugdale
 from tolerance import approx
 
 W, Z0, E_STAR = 0.05, 0.3e-9, 1e11
-REFERENCE = Path(__file__).parents[2] / "docs/studies/cohesive_reference.csv"
+REFERENCE = Path(__file__).parents[2] / "evidence/cohesive/cohesive_reference.csv"
 
 
 def spheres(tabor, traction="largest_traction"):

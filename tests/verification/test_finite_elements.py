@@ -1,4 +1,4 @@
-"""Jackson and Green's (2005) fit against the finite elements of this project (validation/)."""
+"""Jackson and Green's (2005) fit against the finite elements of this project (evidence/)."""
 
 import json
 from pathlib import Path
@@ -8,10 +8,10 @@ import pytest
 from restitution.theory import JacksonGreen
 from tolerance import approx
 
-DATA = Path(__file__).parents[2] / "validation" / "finite_elements" / "data"
+DATA = Path(__file__).parents[2] / "evidence" / "finite_elements" / "data"
 
 
-@pytest.mark.skipif(not DATA.is_dir(), reason="validation/ is not beside the package")
+@pytest.mark.skipif(not DATA.is_dir(), reason="evidence/ is not beside the package")
 def test_two_independent_finite_elements_agree():
     """Force within 4 %, area within 5.5 %: the fit is for ν = 0.32, the reference for 0.3."""
     reference = json.loads((DATA / "smooth_0.001.json").read_text())

@@ -129,7 +129,7 @@ def order(nodes, errors):
 def test_crack_closure_pulls_off_at_the_jkr_force_wherever_the_apex_is(nodes, mean, each):
     """Measured: 1.029 (0.990 to 1.049) at four nodes, 1.002 (0.991 to 1.020) at eight.
 
-    No further over 24 offsets (docs/studies/pull_off.py). The finer the steps, the more of the
+    No further over 24 offsets (evidence/pull_off/pull_off.py). The finer the steps, the more of the
     lattice's saw teeth they see.
     """
     found = pull_off(nodes, "crack-closure")

@@ -20,12 +20,12 @@ from restitution.cli.console import (
     table_of_numbers,
 )
 from restitution.cli.parameters import FigureFormat
+from restitution.compare import theories
+from restitution.compare.area_theory import AreaTheory, area_of_case, area_of_results
+from restitution.compare.theories import Theory
 from restitution.display import quantity
 from restitution.errors import CaseError
-from restitution.laws import theories
-from restitution.laws.area_theory import AreaTheory, area_of_case, area_of_results
-from restitution.laws.law_files import read_law, write_theories
-from restitution.laws.theories import Theory
+from restitution.laws.law_files import read_law
 from restitution.plots.law import theory_figure
 from restitution.plots.periodic import area_theory_figure
 from restitution.plots.static import write_figure
@@ -57,7 +57,7 @@ def compare_theory(case: Path, out: Path | None, law: Path | None, figures: Figu
         lines = theories.theory_lines(read, velocities, curves)
         figure = theory_figure(read.title, lines, theories.marks(read), points)
         written += [
-            write_theories(velocities, curves, out),
+            theories.write_theories(velocities, curves, out),
             write_figure(out / "theory", figure, figures.value),
         ]
 

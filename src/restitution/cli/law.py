@@ -18,8 +18,8 @@ from restitution.cli.console import (
 from restitution.cli.parameters import ExportFormat, FigureFormat
 from restitution.dem.export import export as exported
 from restitution.dem.export import limit, unset, write_export
-from restitution.laws.force_law_fits import too_few_points
-from restitution.laws.from_results import law_of
+from restitution.dem.fits import fit_law as law_of
+from restitution.dem.fits import too_few_points
 from restitution.laws.law import LOSS, FittedLaw, Law, velocity_of
 from restitution.laws.law_files import read_laws, write_law
 from restitution.plots.law import law_figure

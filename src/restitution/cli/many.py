@@ -18,13 +18,13 @@ from restitution.cli.console import (
 )
 from restitution.cli.parameters import FigureFormat
 from restitution.errors import CaseError
-from restitution.mixtures.mixture import run_mixture
-from restitution.mixtures.mixture_file import read_mixture
-from restitution.mixtures.mixture_folder import (
+from restitution.mixtures.mixture import (
     condensed_warnings,
     open_mixture_folder,
+    run_mixture,
     write_mixture,
 )
+from restitution.mixtures.mixture_file import read_mixture
 from restitution.plots.law import mixture_figure
 from restitution.plots.static import write_figure
 from restitution.reproduce.report import write_reproduction

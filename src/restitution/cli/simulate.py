@@ -6,10 +6,10 @@ from pathlib import Path
 from restitution.case.quantities import read_impact_angle, read_quantity
 from restitution.cli.console import answers, print_numbers, say, say_written, table_of_numbers
 from restitution.errors import CaseError
-from restitution.laws import oblique
+from restitution.impacts import oblique
+from restitution.impacts.time_integration import collide_in_time, course, stored_force
 from restitution.laws.from_results import bare_law
 from restitution.laws.law import velocity_of
-from restitution.laws.time_integration import collide_in_time, course, stored_force
 from restitution.results.reader import RunResults, read_run
 from restitution.results.writer import require_new_file, write_table
 
@@ -119,12 +119,12 @@ def _oblique(
         for slope in at:
             collision = oblique.collide_obliquely(force, speed, slope, friction, (first, second))
             courses += oblique.course(collision)
-            e_t, error = collision.tangential_restitution, collision.tangential_restitution_error
+            e_t, off = collision.tangential_restitution, collision.tangential_restitution_error
             table.add_row(
                 f"{collision.velocity:.4g}",
                 f"{math.degrees(slope):.4g}",
                 f"{collision.normal_restitution:.4f}",
-                f"{e_t:.3f} ± {error:.3f}",
+                f"{e_t:.3f} ± {off:.3f}",
                 f"{math.degrees(collision.rebound_angle):.2f}",
                 ", ".join(f"{spin:.5g}" for spin in collision.spins),
                 f"{collision.friction_loss:.4g}",

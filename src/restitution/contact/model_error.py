@@ -10,13 +10,13 @@ finite element results, the nearest value is used and may be too small.
 
 These references are half-spaces. A sphere that yields returns less energy, the less the larger its
 contact radius a over its radius R. `depth_difference` adds this difference. It comes from finite
-elements of hemispheres and of half-spaces with finite strains (validation/bodies.csv).
+elements of hemispheres and of half-spaces with finite strains (bodies.csv in evidence).
 
 With `adhesion = "jkr"` there is a second error. JKR theory neglects the range of the attraction and
 therefore dissipates too much energy. The second error is computed from a table of the energy that
 smooth elastic spheres dissipate in one cycle of contact. The table gives this energy as a fraction
 of the energy dissipated in JKR theory, for several values of the Tabor parameter
-(docs/studies/cohesive_reference.csv).
+(evidence/cohesive/cohesive_reference.csv).
 """
 
 from __future__ import annotations

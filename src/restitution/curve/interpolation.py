@@ -2,20 +2,9 @@
 
     W_u/W_l = q(ln V) − s/V²
 
-W_u and W_l are the works of unloading and loading, and V is the impact velocity. A monotone cubic
-(PCHIP) interpolates q. The term s/V² describes an energy loss by adhesion that is about the same at
-every velocity. For an elastic pair, s is the square of the sticking velocity (Thornton & Ning
-1998). Here s is chosen such that q is equal at the two lowest velocities. If this value is
-negative, or if the pair does not adhere, s is zero. The pair rebounds above the velocity at which
-the interpolated ratio is zero.
-
-The error estimate is the larger of two values. The first value is based on the leave-one-out
-residuals of the two computed points next to V. In the middle between these points, it is 1.5 times
-the larger residual. (If the curve has only two points, it is the difference between their values of
-q.) Towards the points, it decreases to zero as 2 (t (1 − t))^½, where t (0 to 1) is the position of
-ln V between them. The standard deviation of a random walk with both ends fixed has the same form.
-The second value is the difference between the cubic and the linear interpolation. For rough
-surfaces, docs/dem.md states how often the true error is within the estimate.
+A monotone cubic (PCHIP) interpolates q. s/V² is a loss by adhesion that is the same at every
+velocity (Thornton & Ning 1998: s is the square of the sticking velocity); s makes q equal at the
+two lowest velocities, and is at least 0. docs/dem.md says how often the error estimate holds.
 """
 
 from __future__ import annotations
@@ -33,7 +22,7 @@ _SAFETY = 1.5
 
 
 class RatioCurve:
-    """Ratio W_u/W_l of unloading to loading work, interpolated between impact velocities.
+    """W_u/W_l between impact velocities.
 
     `velocities` (m/s, increasing) and `ratios` have shape (points,).
     """
@@ -48,11 +37,16 @@ class RatioCurve:
         self._q = ratios + self.adhesion / velocities**2
 
     def at(self, velocity: float) -> float:
-        """Interpolate the ratio at `velocity` (m/s), which must be in the range of `velocities`."""
+        """The ratio at `velocity` (m/s), which must be in the range of `velocities`."""
         return _pchip(self._L, self._q, math.log(velocity)) - self.adhesion / velocity**2
 
     def error(self, velocity: float) -> float:
-        """Error estimate of the ratio at `velocity` (m/s), continuous and zero at the points."""
+        """Error estimate of the ratio at `velocity` (m/s), continuous and zero at the points.
+
+        The larger of two: 1.5 times the larger leave-one-out residual of the two points beside it,
+        times 2 (t (1 − t))^½ (as of a random walk with both ends fixed), where t is the position
+        between them; and the difference from linear interpolation.
+        """
         if self.velocities.size == 1:
             return 0.0
         L = math.log(velocity)
@@ -62,10 +56,7 @@ class RatioCurve:
         return max(middle * 2 * math.sqrt(t * (1 - t)), line)
 
     def interval(self, velocity: float) -> tuple[int, float]:
-        """Find the interval between two points that contains `velocity` (m/s).
-
-        Returns the index of the upper point, and the position t (0 to 1) of ln V in the interval.
-        """
+        """Index of the point above `velocity` (m/s), and the position (0 to 1) of ln V below it."""
         L = math.log(velocity)
         after = min(max(int(np.searchsorted(self._L, L)), 1), self._L.size - 1)
         below, above = self._L[after - 1 : after + 1]
@@ -74,7 +65,7 @@ class RatioCurve:
     def begins(self) -> float | None:
         """The velocity (m/s) above which the pair rebounds.
 
-        None if the pair rebounds at every computed velocity, or at none of them.
+        None if it rebounds at every computed velocity, or at none.
         """
         sticking = np.flatnonzero(self.ratios <= 0)
         if not sticking.size or sticking[-1] == self.ratios.size - 1:
@@ -91,7 +82,7 @@ class RatioCurve:
 
     @cached_property
     def _left_out(self) -> Array:
-        """Leave-one-out residual of each point; an end point has the residual of its neighbour."""
+        """Leave-one-out residuals; an end point has that of its neighbour."""
         n = self._L.size
         if n == 2:
             return np.full(2, abs(self._q[1] - self._q[0]) / _SAFETY)

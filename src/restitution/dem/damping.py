@@ -1,31 +1,12 @@
 """Damping parameters with which simple contact laws have a given coefficient of restitution e.
 
-The overlap x of a linear spring and dashpot without tension obeys x″ = −max(ω²x + 2ζωx′, 0). Here ω
-is the natural frequency and ζ the damping ratio. The contact ends when the force returns to zero.
-At this time t after first touch, ω(1 − ζ²)^½ t = 2 arccos ζ, and therefore
-
-    e = exp(−2ζ arccos ζ/(1 − ζ²)^½).
-
-For ζ > 1, arccosh and ζ² − 1 replace arccos and 1 − ζ². Source: T. Schwager, T. Pöschel, Granular
-Matter 9 (2007) 465.
-
-The law of Hunt and Crossley is F = f(x)(1 + d x′) with any function f and the dissipation d. The
-equation of motion of the reduced mass m is m x′ dx′ = −F dx. Divide both sides by 1 + d x′ and
-integrate over the contact. With the impact velocity V and c = dV, the result is
-
-    c (1 + e) = ln((1 + c)/(1 − ec)).
-
-Source: K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440; the solution in the phase plane
-is that of D. W. Marhefka, D. E. Orin, IEEE Trans. Syst. Man Cybern. A 29 (1999) 566.
-
-A Hertz contact with a constant damping coefficient γ has the equation
-
-    m x″ = −(4/3)E* R*^½ x^{3/2} − γx′
-
-until x = 0, where E* is the contact modulus and R* the reduced radius. In units of the length
-L = (mV²/((4/3)E* R*^½))^⅖ and the time L/V the equation is x″ = −x^{3/2} − g x′ with g = γL/(mV).
-So e depends only on the dimensionless damping g, which is proportional to V^{−⅕}. The equation is
-integrated numerically.
+* Linear spring and dashpot without tension, with the damping ratio ζ: e = exp(−2ζ arccos ζ/(1 −
+  ζ²)^½); for ζ > 1, arccosh and ζ² − 1 (T. Schwager, T. Pöschel, Granular Matter 9 (2007) 465).
+* Hunt and Crossley, F = f(x)(1 + d x′): c (1 + e) = ln((1 + c)/(1 − ec)) with c = dV, for any f
+  (K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440; D. W. Marhefka, D. E. Orin, IEEE
+  Trans. Syst. Man Cybern. A 29 (1999) 566).
+* Hertz with a constant damping γ until x = 0: in units of L = (mV²/((4/3)E* R*^½))^⅖ and L/V, x″ =
+  −x^{3/2} − g x′ with g = γL/(mV), which is proportional to V^{−⅕}; integrated numerically.
 """
 
 from __future__ import annotations
@@ -51,7 +32,7 @@ _LARGEST_DAMPING = 20.0
 
 
 def dashpot_restitution(ratio: float) -> float:
-    """Return e of a linear spring and dashpot without tension; `ratio` is the damping ratio ζ."""
+    """e of a linear spring and dashpot without tension; `ratio` is the damping ratio ζ."""
     if ratio == 1:
         return math.exp(-2)
     root = math.sqrt(abs(1 - ratio**2))
@@ -60,15 +41,12 @@ def dashpot_restitution(ratio: float) -> float:
 
 
 def dashpot_ratio(restitution: float) -> float:
-    """Return the damping ratio ζ of a linear spring and dashpot that have the restitution e.
-
-    The force of spring and dashpot is never tensile (see the top of this file).
-    """
+    """The damping ratio ζ of a linear spring and dashpot, never tensile, with the restitution e."""
     return _root(dashpot_restitution, restitution, _LARGEST_DAMPING)
 
 
 def hunt_crossley_dissipation(restitution: float) -> float:
-    """Return d·V (dimensionless), dissipation times impact velocity, for the restitution e > 0."""
+    """Dissipation times impact velocity dV (dimensionless) for the restitution e > 0."""
     e = restitution
     if 1 - e < _NEARLY_ELASTIC:
         return 1.5 * (1 - e**2) / (1 + e**3)
@@ -84,7 +62,7 @@ def hunt_crossley_dissipation(restitution: float) -> float:
 
 
 def hunt_crossley_restitution(dissipation: float) -> float:
-    """Return e from the product dV (dimensionless) of dissipation d and impact velocity V."""
+    """e from dissipation times impact velocity dV (dimensionless)."""
     c = dissipation
     if c < _SMALL:
         return 1.0 - 2 / 3 * c
@@ -97,7 +75,7 @@ def hunt_crossley_restitution(dissipation: float) -> float:
 
 
 def hertz_restitution(damping: float) -> float:
-    """Return e of a Hertz contact with the dimensionless damping g; 0 if there is no rebound."""
+    """e of a Hertz contact with the dimensionless damping g; 0 if there is no rebound."""
 
     def slope(_: float, y: tuple[float, float]) -> list[float]:
         return [y[1], -(max(y[0], 0.0) ** 1.5) - damping * y[1]]
@@ -111,16 +89,13 @@ def hertz_restitution(damping: float) -> float:
 
 
 def hertz_damping(law: Law, velocity: float, restitution: float) -> float:
-    """Return the damping coefficient γ (kg/s) that gives a Hertz contact the COR `restitution`.
-
-    `velocity` is the impact velocity (m/s).
-    """
+    """Damping γ (kg/s) with which a Hertz contact has `restitution` at `velocity` (m/s)."""
     g = _root(hertz_restitution, restitution, 2.0)
     return g * law.mass * velocity / _length(law, velocity)
 
 
 def hertz_restitution_at(law: Law, damping: float, velocity: float) -> float:
-    """Return e of a Hertz contact with the damping coefficient γ (kg/s) at `velocity` (m/s)."""
+    """e of a Hertz contact with the damping coefficient γ (kg/s) at `velocity` (m/s)."""
     return hertz_restitution(damping * _length(law, velocity) / (law.mass * velocity))
 
 

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
 
-from restitution.dem.adhesion import pull_off_force
 from restitution.dem.export_common import unset_pairs
+from restitution.dem.pair import pull_off_force
 from restitution.dem.pair_table import PairTable, pair_table
 from restitution.errors import CaseError, OutputError
 from restitution.laws.law import Law
@@ -33,14 +33,11 @@ _WHOLE = (
 
 
 def export(laws: Sequence[Law], code: str, velocity: float | None) -> dict[str, str]:
-    """Make input files of `code` (one of `CODES`) for the pairs of `laws`.
+    """The text of each input file of `code` (one of `CODES`) for the pairs of `laws`, by file name.
 
-    Returns the text of each file, by file name.
-
-    All codes except `csv` use one coefficient of restitution for each pair, so they need the
-    `velocity` (m/s) at which this coefficient holds. Raises `CaseError` if the velocity or a
-    required law is missing, or if the code does not accept a value of a pair. Raises
-    `DomainError` for a velocity outside the computed velocities.
+    All codes except `csv` take one e for each pair, which holds at `velocity` (m/s). Raises
+    `CaseError` if the velocity or a law is missing, or if the code does not accept a value;
+    `DomainError` for a velocity outside the computed ones.
     """
     table = pair_table(laws)
     if code == "csv":
@@ -57,14 +54,14 @@ def export(laws: Sequence[Law], code: str, velocity: float | None) -> dict[str, 
 
 
 def limit(code: str) -> str:
-    """State the conditions under which `code` returns the exported e; empty if there are none."""
+    """The conditions under which `code` returns the exported e; empty if there are none."""
     if code == "csv":
         return ""
     return str(getattr(import_module(f"restitution.dem.codes.{code}"), "NOTE", ""))
 
 
 def unset(laws: Sequence[Law], code: str) -> list[str]:
-    """State which pairs of spheres have no law, and how the user gives `code` their e."""
+    """The pairs of spheres without a law, and how the user gives `code` their e."""
     if code == "csv":
         return []
     module = import_module(f"restitution.dem.codes.{code}")
@@ -72,10 +69,7 @@ def unset(laws: Sequence[Law], code: str) -> list[str]:
 
 
 def write_export(texts: dict[str, str], out: Path) -> list[Path]:
-    """Write `texts` (by file name) into `out`.
-
-    Raises `OutputError` if one of the files exists already, or if they cannot be written.
-    """
+    """Write `texts` (by file name) into `out`; nothing is overwritten. Raises `OutputError`."""
     with writing(out):
         out.mkdir(parents=True, exist_ok=True)
         there = [name for name in texts if (out / name).exists()]
@@ -89,11 +83,6 @@ def write_export(texts: dict[str, str], out: Path) -> list[Path]:
 
 
 def _table(table: PairTable, velocity: float | None) -> str:
-    """Make a CSV table of all pairs.
-
-    Each pair has one row with its values at `velocity` (m/s). If `velocity` is None, each pair has
-    a row for every point of its law.
-    """
     rows: list[dict[str, float | str]] = []
     for i, j, law in table.pairs():
         pair: dict[str, float | str] = {

@@ -1,9 +1,7 @@
 """What all exports share: the pairs at one velocity, comments, and templates.
 
-DEM codes use one coefficient of restitution e for each pair, so an export is valid at one impact
-velocity. The notes beside an export (`notes`) give the origin of e, its error, and its values at
-other velocities. Notes and comments are plain ASCII without quotes, braces or line-continuation
-characters, so that a name or title given by the user cannot end a comment.
+Notes and comments are plain ASCII without quotes, braces or line-continuation characters, so that a
+name or title given by the user cannot end a comment.
 """
 
 from __future__ import annotations
@@ -13,13 +11,14 @@ import textwrap
 import unicodedata
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache, cached_property, partial
 from importlib.metadata import PackageNotFoundError, version
 
+import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from restitution.dem.notes import about, grouped_warnings
-from restitution.dem.pair import Pair, contact_time
+from restitution.dem.pair import FRICTION, ExportedPair, contact_time
 from restitution.dem.pair_table import PairTable
 from restitution.display import quantity
 from restitution.errors import CaseError, one_line
@@ -28,6 +27,10 @@ from restitution.laws.particle import Particle
 
 STEPS = 5000  # number of time steps in a contact
 
+SCRIPT = "match_velocity.py"
+_ROUNDS = 6  # largest number of runs of the simulation
+_TOLERANCE = 0.005  # change of e below which the script stops
+_SAMPLES = 4  # number of table intervals between two neighbouring computed velocities
 _WIDTH = 98
 _SIGNS = str.maketrans({'"': "'", "`": "'", "\\": "/", "&": "+", "{": "(", "}": ")", "$": "%"})
 _PLAIN = str.maketrans("–—−‐‑’‘“”·×≈→µ", "-----''''.x~>u") | str.maketrans(
@@ -37,13 +40,11 @@ _PLAIN = str.maketrans("–—−‐‑’‘“”·×≈→µ", "-----''''.x~>
 
 @dataclass(frozen=True)
 class Export:
-    """An export of `table` to `code`.
+    """An export of `table` to `code`, at the impact velocity `velocity` (m/s).
 
-    `velocity` (m/s) is the impact velocity at which the exported e of each pair holds. `lowest`
-    is the smallest e that `code` reproduces. `ends` describes the condition at which `code` ends a
-    contact. `constant` says whether e in `code` is the same at every velocity. `setting` tells the
-    user how to set e of pairs of spheres if all laws are those of walls; it is empty if `code` does
-    not need them.
+    `lowest` is the smallest e that `code` reproduces. `ends` says when `code` ends a contact, and
+    `constant` whether its e is the same at every velocity. `setting` tells how to set e of pairs of
+    spheres if all laws are those of walls; empty if `code` does not need them.
     """
 
     table: PairTable
@@ -55,13 +56,9 @@ class Export:
     setting: str = ""
 
     @cached_property
-    def pairs(self) -> list[Pair]:
-        """All pairs of the table with their e at `velocity`.
-
-        Raises `CaseError` if e is below `lowest`. Raises `DomainError` if `velocity` is outside the
-        computed velocities of a pair.
-        """
-        found, bodies = [], self.table.particles
+    def pairs(self) -> list[ExportedPair]:
+        """All pairs, with e at `velocity`. Raises `CaseError` below `lowest`, and `DomainError`."""
+        pairs, bodies = [], self.table.particles
         for i, j, law in self.table.pairs():
             e = law.at(self.velocity).restitution
             if e < self.lowest:
@@ -70,8 +67,8 @@ class Export:
                     f"export to {self.code} requires e of at least {self.lowest:g}; export at a "
                     "higher velocity, or use an adhesive contact model"
                 )
-            found.append(Pair(i, j, bodies[i - 1], bodies[j - 1], law, self.velocity, e))
-        return found
+            pairs.append(ExportedPair(i, j, bodies[i - 1], bodies[j - 1], law, self.velocity, e))
+        return pairs
 
     @property
     def notes_name(self) -> str:
@@ -100,26 +97,63 @@ class Export:
         return {self.notes_name: "\n".join(wrapped(lines)) + "\n"}
 
     def render(self, name: str, sign: str = "#", **values: object) -> str:
-        """Fill `values` into the template of the file `name`.
+        """Fill `values` into `templates/NAME.j2`.
 
-        The template is `templates/NAME.j2`. It can also use `table`, `pairs` and `velocity` of the
-        export, the names and the filters of `_environment`, and two comments, whose lines begin
-        with `sign`: `head`, a few lines for the top of the file, and `ending`, which contains all
-        warnings.
+        The template also has `table`, `pairs` and `velocity`, what `_environment` holds, and two
+        comments whose lines begin with `sign`: `head`, and `ending` with all warnings.
         """
         template = _environment().get_template(f"{name}.j2")
         shared = {"table": self.table, "pairs": self.pairs, "velocity": self.velocity}
         return template.render(shared, head=self.head(sign), ending=self.ending(sign), **values)
 
+    def matching_script(self, command: str, fragment: str, matched: str) -> str:
+        """The script that finds one e for each pair of types in a simulation, which `command` runs.
+
+        `fragment` is the exported file with the pairs, and `matched` the file that the script
+        writes.
+        """
+        return self.render(
+            SCRIPT,
+            code=self.code,
+            command=command,
+            fragment=fragment,
+            matched=matched,
+            lowest=self.lowest,
+            points=partial(law_points, lowest=self.lowest),
+            rounds=_ROUNDS,
+            tolerance=_TOLERANCE,
+        )
+
+    def friction_note(self, sign: str = "", tangential: str = "") -> str:
+        """The origin of the coefficients of friction, as comments that begin with `sign` if given.
+
+        `tangential` describes the tangential settings of pairs whose cases state a coefficient.
+        """
+        pairs = self.pairs
+        missing = [f"{pair.i} {pair.j}" for pair in pairs if pair.law.friction is None]
+        stated = f"The coefficients of friction are those of the cases. {tangential}"
+        if len(missing) == len(pairs):
+            stated = (
+                f"Friction {FRICTION} is a placeholder: friction is not computed here; set your "
+                "value."
+            )
+        elif missing:
+            stated = (
+                f"Friction {FRICTION} of the pairs {', '.join(missing)} is a placeholder: their "
+                "cases have no interface.friction; set your value. The other coefficients of "
+                f"friction are those of the cases. {tangential}"
+            )
+        return commented(wrapped([stated.strip()]), sign) if sign else stated.strip()
+
     def head(self, sign: str) -> str:
-        """Write the comment at the top of each exported file."""
+        """The comment at the top of each exported file."""
         lines = [self._title(), f"Types, errors, origin and conventions of e: {self.notes_name}"]
         if self._ending():
             lines.append("WARNINGS are at the end of this file.")
         return commented(wrapped(lines), sign)
 
     def ending(self, sign: str) -> str:
-        """Write the comment at the end of each exported file: all warnings, or nothing."""
+        """The comment at the end of each exported file: all warnings, or nothing."""
         return commented(wrapped(self._ending()), sign)
 
     def _title(self) -> str:
@@ -132,15 +166,21 @@ class Export:
         return [*self.unset(), *grouped_warnings(self.pairs)]
 
     def unset(self) -> list[str]:
-        """State which pairs of spheres have no law, and how the user sets their e."""
+        """The pairs of spheres without a law, and how the user sets their e."""
         return unset_pairs(self.table, self.code, self.setting)
 
 
-def unset_pairs(table: PairTable, code: str, setting: str) -> list[str]:
-    """State which pairs of spheres have no law, and how to set their e; [] if `setting` is empty.
+def law_points(law: Law, lowest: float) -> list[tuple[float, float]]:
+    """e of `law`, at least `lowest`, against velocity (m/s), fine enough to be linear between."""
+    V = law.column("velocity")
+    fine = np.interp(
+        np.arange((V.size - 1) * _SAMPLES + 1) / _SAMPLES, np.arange(V.size), np.log(V)
+    )
+    return [(v, max(law.at(v).restitution, lowest)) for v in np.exp(fine).tolist()]
 
-    `setting` is that of `Export`.
-    """
+
+def unset_pairs(table: PairTable, code: str, setting: str) -> list[str]:
+    """The pairs of spheres without a law, and how to set their e (`Export.setting`)."""
     if not setting or not table.walls_only:
         return []
     pairs = [f"{i} {j}" for i, j in table.missing_spheres()]
@@ -152,7 +192,7 @@ def unset_pairs(table: PairTable, code: str, setting: str) -> list[str]:
 
 
 def density_of(particle: Particle) -> float:
-    """The density of a sphere (kg/m³). Raises `CaseError` if the density is unknown."""
+    """The density of a sphere (kg/m³). Raises `CaseError` if it is unknown."""
     if particle.density is None:
         raise CaseError(
             f"{particle}: has no density, but DEM needs one; give the density in the case"
@@ -161,7 +201,7 @@ def density_of(particle: Particle) -> float:
 
 
 def identifier(particle: Particle, number: int) -> str:
-    """Make a name of letters, digits and `_`, ending in `number`, that every DEM code accepts."""
+    """A name of letters, digits and `_`, ending in `number`, that every DEM code accepts."""
     word = (
         re.sub(r"[^A-Za-z0-9]+", "_", comment_text(particle.name))
         .strip("_")[:24]
@@ -173,20 +213,16 @@ def identifier(particle: Particle, number: int) -> str:
 
 
 def commented(lines: Iterable[str], sign: str) -> str:
-    """Turn `lines` into comments that begin with `sign`."""
+    """`lines` as comments that begin with `sign`."""
     return "\n".join(f"{sign} {line}".rstrip() for line in lines)
 
 
 def _xml_safe(text: str) -> str:
-    """Separate double hyphens, which XML forbids in comments."""
     return re.sub("-(?=-)", "- ", text)
 
 
 def comment_text(text: str) -> str:
-    """Convert `text` to one line of ASCII that cannot end a comment.
-
-    Greek letters are replaced by their names.
-    """
+    """`text` as one line of ASCII that cannot end a comment; Greek letters become their names."""
     text = unicodedata.normalize("NFKD", one_line(text).translate(_PLAIN)).translate(_PLAIN)
     text = "".join(map(_ascii, text)).translate(_SIGNS)
     return text.replace("*/", "* /").replace("/*", "/ *").replace("??/", "?? /")
@@ -198,7 +234,7 @@ def number(value: float) -> str:
 
 
 def program_version() -> str:
-    """Return the installed version of this package, or "(version unknown)"."""
+    """The installed version of this package, or "(version unknown)"."""
     try:
         return version("restitution")
     except PackageNotFoundError:  # the program is not installed
@@ -241,12 +277,12 @@ def _failure(law: Law, e: float) -> str:
 
 
 def wrapped(lines: Iterable[str]) -> list[str]:
-    """Convert `lines` to lines of ASCII of at most `_WIDTH` characters, for comments."""
-    found = []
+    """Lines of ASCII of at most `_WIDTH` characters, for comments."""
+    folded = []
     for line in map(comment_text, lines):
         indent = " " * (len(line) - len(line.lstrip()) + 4)
-        found += textwrap.wrap(line, _WIDTH, subsequent_indent=indent) or [""]
-    return found
+        folded += textwrap.wrap(line, _WIDTH, subsequent_indent=indent) or [""]
+    return folded
 
 
 def _ascii(c: str) -> str:

@@ -2,36 +2,41 @@
 
 from __future__ import annotations
 
+import math
 import textwrap
 from collections.abc import Sequence
 from contextlib import suppress
 
-from restitution.dem.adhesion import adhesion_lines
-from restitution.dem.pair import Pair
+from restitution.dem.pair import ExportedPair, pull_off_force
 from restitution.display import without_numbers
 from restitution.errors import DomainError, one_line
 from restitution.laws.law import Law
+from restitution.theory.jkr import JKR
 
+_LEFT_OUT = (
+    "the pull-off force is not modelled below, because the damping alone produces the e of this "
+    "pair: an adhesive contact model would dissipate additional energy and lower e"
+)
+_OBSTACLES = {
+    "LAMMPS": "jkr and dmt do not accept coeff_restitution",
+    "LIGGGHTS": "cohesion sjkr needs an energy density instead of the work of adhesion",
+    "MuJoCo": "contact forces are never attractive",
+    "Drake": "contact forces are never attractive",
+}
 _MOST = 20  # largest number of pairs that are listed after a warning
 
 
-def grouped_warnings(pairs: Sequence[Pair]) -> list[str]:
-    """Write each warning once, with the pairs for which it holds.
-
-    Warnings that differ only in numbers count as one.
-    """
-    groups: dict[str, list[tuple[Pair, str]]] = {}
+def grouped_warnings(pairs: Sequence[ExportedPair]) -> list[str]:
+    """Each warning once, with its pairs; warnings that differ only in numbers count as one."""
+    groups: dict[str, list[tuple[ExportedPair, str]]] = {}
     for pair in pairs:
         for text in dict.fromkeys(_warnings(pair)):
             groups.setdefault(without_numbers(text), []).append((pair, text))
     return [f"WARNING: {_in_words(group, len(pairs))}" for group in groups.values()]
 
 
-def numbers(pairs: Sequence[Pair], count: int = 0) -> str:
-    """List the type numbers of `pairs`: "pair 1 1", or "pairs 1 1, 1 2".
-
-    If there are several pairs and they are all pairs of the export (`count`), say so.
-    """
+def numbers(pairs: Sequence[ExportedPair], count: int = 0) -> str:
+    """The type numbers of `pairs`: "pairs 1 1, 1 2", or "all pairs" if they are `count`."""
     if 1 < len(pairs) == count:
         return "all pairs"
     listed = [f"{pair.i} {pair.j}" for pair in pairs[:_MOST]]
@@ -39,8 +44,8 @@ def numbers(pairs: Sequence[Pair], count: int = 0) -> str:
     return f"pair{'' if len(pairs) == 1 else 's'} {', '.join(listed)}{more}"
 
 
-def about(pairs: Sequence[Pair], code: str) -> list[str]:
-    """Describe the law of each pair. Lines that are the same for all pairs are written once."""
+def about(pairs: Sequence[ExportedPair], code: str) -> list[str]:
+    """The law of each pair; lines that are the same for all pairs are written once."""
     described = [_about(pair, code) for pair in pairs]
     common = [line for line in described[0] if all(line in lines for lines in described)]
     several = len(pairs) > 1
@@ -51,7 +56,7 @@ def about(pairs: Sequence[Pair], code: str) -> list[str]:
     return lines
 
 
-def _warnings(pair: Pair) -> list[str]:
+def _warnings(pair: ExportedPair) -> list[str]:
     """The warnings of a pair; `{pairs}` stands for the pairs for which a warning holds."""
     lines, V = [], f"{pair.velocity:.6g} m/s"
     if not pair.law.at(pair.velocity).resolved:
@@ -64,7 +69,7 @@ def _warnings(pair: Pair) -> list[str]:
     return lines + [f"{{pairs}}: {text}" for text in pair.law.warnings]
 
 
-def _in_words(group: Sequence[tuple[Pair, str]], count: int) -> str:
+def _in_words(group: Sequence[tuple[ExportedPair, str]], count: int) -> str:
     pairs, texts = [pair for pair, _ in group], {text for _, text in group}
     differ = " (with other numbers for other pairs)" if len(texts) > 1 else ""
     text = group[0][1]
@@ -73,7 +78,7 @@ def _in_words(group: Sequence[tuple[Pair, str]], count: int) -> str:
     return text.replace("{pairs}", numbers(pairs, count), 1) + differ
 
 
-def _about(pair: Pair, code: str) -> list[str]:
+def _about(pair: ExportedPair, code: str) -> list[str]:
     law, velocity = pair.law, pair.velocity
     p_y = "none (elastic)" if law.yield_pressure is None else f"{law.yield_pressure:.6g} Pa"
     title = textwrap.shorten(one_line(law.title), 200, placeholder=" ...")
@@ -90,14 +95,28 @@ def _about(pair: Pair, code: str) -> list[str]:
         f"  elastic contact time: {pair.contact_time:.3g} s; a time step of 1/50 "
         "of this time changes e by at most 1 % in LAMMPS",
         f"  computed from {law.lowest:.4g} to {law.highest:.4g} m/s; nothing is extrapolated",
-        *adhesion_lines(law, velocity, code),
+        *_adhesion(law, velocity, code),
     ]
 
 
 def _elsewhere(law: Law, velocity: float) -> str:
-    """State e at half and at twice `velocity` (m/s), if the law includes these velocities."""
     said = []
     for V in (velocity / 2, velocity * 2):
         with suppress(DomainError):
             said.append(f"{law.at(V).restitution:.4g} at {V:.6g} m/s")
     return f" (but {', '.join(said)})" if said else ""
+
+
+def _adhesion(law: Law, velocity: float, code: str) -> list[str]:
+    if law.work_of_adhesion == 0:
+        return []
+    force = pull_off_force(law, velocity)
+    said = "not known (it needs unloading curves)" if math.isnan(force) else f"{force:.4g} N"
+    jkr = JKR(law.radius, law.contact_modulus, law.work_of_adhesion)
+    obstacle = f"; {_OBSTACLES[code]}" if code in _OBSTACLES else ""
+    return [
+        f"  adhesion {law.work_of_adhesion:.4g} J/m^2: e includes its dissipation",
+        f"  pull-off force after an impact at {velocity:.6g} m/s: {said}; JKR of the smooth "
+        f"bodies: {float(jkr.pull_off_force):.4g} N",
+        f"  {_LEFT_OUT}{obstacle}",
+    ]

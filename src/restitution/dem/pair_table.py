@@ -1,4 +1,4 @@
-"""Table of pairs that most DEM codes need: one law for each pair of particle types."""
+"""The table of pairs that most DEM codes need: one law for each pair of particle types."""
 
 from __future__ import annotations
 
@@ -22,8 +22,7 @@ _EQUAL = 1e-5
 class PairTable:
     """Types of spheres and walls, and the law of every given pair.
 
-    Types are numbered from 1, as in DEM codes; the numbers of walls follow those of spheres. The
-    keys of `laws` are (i, j) with i ≤ j.
+    Types are numbered from 1, spheres first. The keys of `laws` are (i, j) with i ≤ j.
     """
 
     spheres: tuple[Particle, ...]
@@ -32,12 +31,12 @@ class PairTable:
 
     @property
     def particles(self) -> tuple[Particle, ...]:
-        """All particles: the spheres, then the walls."""
+        """The spheres, then the walls."""
         return self.spheres + self.walls
 
     @property
     def largest_radius(self) -> float:
-        """The radius of the largest sphere, m."""
+        """The radius of the largest sphere (m)."""
         return max(body.radius or 0.0 for body in self.spheres)
 
     @property
@@ -56,20 +55,16 @@ class PairTable:
         return [pair for pair in pairs if pair not in self.laws]
 
     def require_spheres(self, code: str) -> None:
-        """Raise `CaseError`, which names `code`, if a pair of two types of spheres has no law.
+        """Raise `CaseError` if a pair of types of spheres has no law, unless all laws are of walls.
 
-        If every law is that of a sphere on a wall, nothing is raised: the export then leaves e of
-        the pairs of spheres to the user.
+        An export then leaves e of the pairs of spheres to the user.
         """
         if not self.walls_only:
             reason = "spheres of any two types can touch"
             self._require(code, self.missing_spheres(), "pair of particle types", reason)
 
     def require_all(self, code: str) -> None:
-        """Raise `CaseError`, which names `code`, if a pair with at least one sphere has no law.
-
-        Pairs of spheres may have no law under the condition of `require_spheres`.
-        """
+        """Raise `CaseError` if a sphere has no law with a wall, and as `require_spheres`."""
         self.require_spheres(code)
         spheres, last = len(self.spheres), len(self.particles)
         pairs = product(range(1, spheres + 1), range(spheres + 1, last + 1))
@@ -95,9 +90,8 @@ class PairTable:
 def pair_table(laws: Sequence[Law]) -> PairTable:
     """Make the table of pairs from `laws`. Bodies with equal values become one type.
 
-    A value that only one of two bodies has, such as a name or a yield strength, does not make them
-    different. Raises `CaseError` if a body may be either of two types, or if two laws are for the
-    same pair and differ.
+    A value that only one of two bodies has does not make them different. Raises `CaseError` if a
+    body may be either of two types, or if two laws of one pair differ.
     """
     distinct = list(dict.fromkeys(body for law in laws for body in (law.first, law.second)))
     types, kind = _types(distinct)
@@ -147,7 +141,6 @@ def _unknown(body: Particle) -> int:
 
 
 def _named(body: Particle) -> Particle:
-    """Name a body that its case leaves without a material."""
     if body.material is not None:
         return body
     kind = "wall" if body.wall else "sphere"
@@ -155,7 +148,6 @@ def _named(body: Particle) -> Particle:
 
 
 def _equal(one: Law, other: Law) -> bool:
-    """Whether two laws of the same pair have the same velocities, e and friction."""
     V, W = one.column("velocity"), other.column("velocity")
     e, f = one.column("restitution"), other.column("restitution")
     return (

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 
 from restitution.case.quantities import scaled
 from restitution.errors import CaseError, shown
-from restitution.sweeps.coordinates import coordinate
-from restitution.sweeps.sweep import put
+from restitution.sweeps.sweep import coordinate, put
 
 Array = NDArray[np.float64]
 

@@ -1,18 +1,8 @@
-"""The compact fit of a law: COR (e) against velocity (V) with a few coefficients.
+"""The compact fit of a law: e² = Σ c_k L^k − s/V², L = ln(V/V₀)/w in [−1, 1].
 
-    e² = Σ c_k L^k − s/V²,   L = ln(V/V₀)/w in [−1, 1]
-
-V₀ is the geometric mean of the lowest and the highest velocity of the fit, and w scales ln(V/V₀) to
-the interval [−1, 1]. The term s/V² describes an energy loss by adhesion that is the same at every
-velocity. For an elastic pair, s is the square of the sticking velocity (Thornton & Ning 1998). The
-polynomial describes the loss by yielding. At low velocities, a pair without adhesion may rebound
-without loss (e = 1), and a pair with adhesion may stick (e = 0). Among the points with e = 1 or
-e = 0, the fit uses only the one with the highest velocity.
-
-The fit is linear least squares in e². The error of the fit between the points is estimated from two
-values: the largest residual, and the largest leave-one-out residual (as in PRESS, Allen 1974, but
-with the maximum instead of the sum). The larger value is the estimate. The degree of the polynomial
-is the lowest degree with a small error: below 0.001, or at most 1.1 times the smallest error.
+V₀ is the geometric mean of the ends. s/V² is a loss by adhesion, the polynomial the loss by
+yielding. The fit is linear least squares in e²; its error between the points is the larger of the
+largest residual and the largest leave-one-out residual (as in PRESS, Allen 1974, but the maximum).
 """
 
 from __future__ import annotations
@@ -36,10 +26,7 @@ _COUNTS = 0.01  # at the velocity `adhesive_below`, adhesion lowers e² by this 
 
 
 def compact_fit(law: Law) -> CompactFit | None:
-    """Fit the compact formula to the points of `law` that the grid resolves.
-
-    Returns None if there are too few points.
-    """
+    """Fit the points of `law` that the grid resolves; None if there are too few."""
     V, ratio = law.column("velocity", resolved=True), law.column("ratio", resolved=True)
     lossless = int(np.append(ratio <= 1 - _NO_LOSS, True).argmax())  # number of lossless points
     # Keep the last lossless (or sticking) point, because it ties the polynomial to e = 1 (or e = 0)
@@ -75,7 +62,6 @@ def compact_fit(law: Law) -> CompactFit | None:
 
 
 def _best(v: Array, L: Array, e2: Array, adhesive: bool) -> tuple[int, bool]:
-    """Choose the lowest degree with a small error, and whether to include the adhesion term."""
     bases = {
         (degree, adhesion): _basis(v, L, degree, adhesion)
         for degree in range(min(_HIGHEST_DEGREE, v.size - 3) + 1)
@@ -91,7 +77,6 @@ def _best(v: Array, L: Array, e2: Array, adhesive: bool) -> tuple[int, bool]:
 
 
 def _basis(v: Array, L: Array, degree: int, adhesion: bool) -> Array:
-    """Terms of the fit at the velocities `v`, one column for each coefficient."""
     basis = np.vander(L, degree + 1, increasing=True)
     return np.column_stack([basis, -1 / v**2]) if adhesion else basis
 
@@ -103,16 +88,10 @@ def _solve(basis: Array, e2: Array) -> Array:
 
 
 def _misfit(fitted: Array, e2: Array) -> float:
-    """Largest difference between the fitted and the given e."""
     return float(np.abs(np.sqrt(np.clip(fitted, 0, 1)) - np.sqrt(np.clip(e2, 0, 1))).max())
 
 
 def _left_out(basis: Array, e2: Array) -> float:
-    """Largest leave-one-out error of e.
-
-    Each point except the first and the last is left out in turn. Its e is compared with the fit to
-    all other points.
-    """
     worst = 0.0
     for k in range(1, e2.size - 1):
         others = np.arange(e2.size) != k

@@ -12,9 +12,7 @@ from pydantic import ValidationError
 from restitution.case.bodies import BodyTable
 from restitution.curve.point import Point as Impact
 from restitution.errors import CaseError, OutputError, first_problem, one_line
-from restitution.laws.compact_fit import compact_fit
-from restitution.laws.force_law_fits import Begin, fitted_laws
-from restitution.laws.law import Conventions, Law, Point
+from restitution.laws.law import Conventions, Law, LawPoint
 from restitution.laws.law_files import LAW_FILE
 from restitution.laws.particle import Particle
 from restitution.results.reader import RunResults, read_run
@@ -22,23 +20,12 @@ from restitution.results.reader import RunResults, read_run
 _SAME = 1e-9  # largest relative difference of values that count as equal
 
 
-def law_of(out: Path | RunResults, begin: Begin | None = None) -> Law:
-    """Make the law of the results `out`, or of those in this folder, with its fits.
-
-    `begin` is called before each fit (`force_law_fits.Begin`). Raises the errors of `bare_law`.
-    """
-    law = bare_law(out)
-    return replace(law, fit=compact_fit(law), laws=fitted_laws(law, begin))
-
-
 def bare_law(out: Path | RunResults) -> Law:
     """Make the law of the results `out`, or of those in this folder, without fits.
 
-    The law of an ensemble contains the means over its surfaces, and its errors include the
-    confidence interval of the mean. The errors from a convergence study include the error of the
-    grid. Depths with a negative loading work (because of adhesion) have no impact velocity and are
-    left out. Raises `OutputError` if the folder holds no run, and `CaseError` if no depth has an
-    impact velocity.
+    The law of an ensemble holds means over its surfaces; its errors include the confidence interval
+    of the mean, and those of a convergence study the error of the grid. Depths without impact
+    velocity are left out. Raises `OutputError` and `CaseError`.
     """
     run = out if isinstance(out, RunResults) else _read(out)
     out = run.folder or Path("the results")
@@ -83,7 +70,7 @@ def _law(out: Path, run: RunResults) -> Law:
             f"{left} of {depths} depths are left out: no impact has its maximum indentation "
             "there, because adhesion alone pulls the bodies deeper or the bodies do not touch"
         )
-    if unknown := sum(_is_unknown(point, asked=case.total_error) for point in curve.points):
+    if unknown := sum(_is_unknown(point, wanted=case.total_error) for point in curve.points):
         warnings.append(
             f"the total error is unknown at {unknown} of {depths} depths; the error stated "
             "there is the largest possible one, the larger of COR and 1 - COR"
@@ -112,7 +99,7 @@ def _law(out: Path, run: RunResults) -> Law:
         model={key: str(value) for key, value in model.items()},
         conventions=Conventions(
             **summary["conventions"],
-            restitution_error=_error_includes(summary["diagnostics"], asked=case.total_error),
+            restitution_error=_error_includes(summary["diagnostics"], wanted=case.total_error),
         ),
         yield_velocity=derived["yield_velocity_m_per_s"],
         smooth_sticking_velocity=derived.get("sticking_velocity_m_per_s"),
@@ -157,13 +144,9 @@ def _read(out: Path) -> RunResults:
     return run
 
 
-def _error_includes(diagnostics: Mapping[str, object], *, asked: bool) -> str:
-    """State in words what `Point.error` includes, and what it does not include.
-
-    `asked` states whether the case asks for the total error.
-    """
+def _error_includes(diagnostics: Mapping[str, object], *, wanted: bool) -> str:
     includes = diagnostics.get("total_error_includes")
-    if not includes and asked:
+    if not includes and wanted:
         return "everything, because it is the largest possible error of COR"
     includes = includes or "solver"
     excludes = diagnostics.get("total_error_does_not_include") or "anything else"
@@ -172,17 +155,17 @@ def _error_includes(diagnostics: Mapping[str, object], *, asked: bool) -> str:
     return f"{includes}; not: {excludes}{error}"
 
 
-def _points(run: RunResults) -> list[Point]:
-    points: list[Point] = []
+def _points(run: RunResults) -> list[LawPoint]:
+    points: list[LawPoint] = []
     for impact in run.curve.impacts.points:
         velocity = impact.impact_velocity
         if not velocity > 0 or (points and velocity <= points[-1].velocity):
             continue
         points.append(
-            Point(
+            LawPoint(
                 velocity=velocity,
                 restitution=impact.restitution,
-                error=_error(impact, asked=run.case.total_error),
+                error=_error(impact, wanted=run.case.total_error),
                 ratio=impact.ratio,
                 loading_work=impact.loading_work,
                 indentation=impact.indentation,
@@ -199,21 +182,15 @@ def _known(value: float) -> float | None:
     return None if math.isnan(value) else value
 
 
-def _error(point: Impact, *, asked: bool) -> float:
-    """Return the total error of a point.
-
-    If the case `asked` for the total error but the point has none, a part of the error is unknown.
-    The result is then the largest possible error of COR. If the case did not ask for the total
-    error, the result is the root sum of squares of the known parts.
-    """
-    if _is_unknown(point, asked=asked):
+def _error(point: Impact, *, wanted: bool) -> float:
+    """Total error of a point: the largest possible error of COR if it is `wanted` but unknown."""
+    if _is_unknown(point, wanted=wanted):
         return max(point.restitution, 1 - point.restitution)
     return point.combined_error if math.isnan(point.total_error) else point.total_error
 
 
-def _is_unknown(point: Impact, *, asked: bool) -> bool:
-    """Whether the case `asked` for a total error that the point lacks."""
-    return asked and math.isnan(point.total_error)
+def _is_unknown(point: Impact, *, wanted: bool) -> bool:
+    return wanted and math.isnan(point.total_error)
 
 
 def _particle(name: str, body: BodyTable) -> Particle:
@@ -229,5 +206,4 @@ def _particle(name: str, body: BodyTable) -> Particle:
 
 
 def _rounded(value: float | None) -> float | None:
-    """Remove the rounding error of a conversion of units: 9.999999999999999e-06 gives 1e-05."""
     return None if value is None else float(f"{value:.12g}")

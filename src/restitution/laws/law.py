@@ -1,7 +1,4 @@
-"""The restitution law of one pair: COR at each computed impact velocity, with its error.
-
-Between the computed velocities COR is interpolated (`interpolation`). Nothing is extrapolated.
-"""
+"""The restitution law of one pair: COR at each computed impact velocity, with its error."""
 
 from __future__ import annotations
 
@@ -30,13 +27,11 @@ _SAME = 1.01e-4
 
 
 @checked_dataclass(frozen=True, kw_only=True, config=STRICT)
-class Point:
+class LawPoint:
     """The result at one impact velocity, in SI units.
 
-    `ratio` is W_u/W_l, the unloading work divided by the loading work. It is zero or negative if
-    the pair sticks. `error` is the error of `restitution`. `indentation` and `force` are the maxima
-    during the impact. `resolved` says whether the grid is fine enough for the contact and its
-    adhesion.
+    `ratio` is W_u/W_l, unloading work over loading work; zero or negative if the pair sticks.
+    `error` is that of `restitution`; `indentation` and `force` are the maxima of the impact.
     """
 
     velocity: Positive
@@ -59,17 +54,13 @@ class Point:
 
 @checked_dataclass(frozen=True, kw_only=True, config=STRICT)
 class CompactFit:
-    """Fit e² = Σ c_k L^k − s/V², L = ln(V/V₀)/w, between `lowest` and `highest` velocity.
+    """Fit e² = Σ c_k L^k − s/V², L = ln(V/V₀)/w, from `lowest` to `highest` velocity (m/s).
 
-    `coefficients` are c_k, `centre` is V₀, `width` is w and `adhesion` is s (m²/s²). All velocities
-    are in m/s. e is 0 for V ≤ `sticks_below`, and where the formula gives a negative e². e is 1 for
-    V ≤ `elastic_below`. At `adhesive_below`, adhesion lowers e² by 0.01.
-
-    The fit uses only the points at which the grid resolves the contact. `lowest` and `highest` are
-    the lowest and the highest velocity of these points. Outside this range the fit has no value.
-    `worst` is the largest difference between fitted and computed e at these points. `between`
-    estimates the largest error between these points. It is the larger of `worst` and the largest
-    leave-one-out residual of e.
+    `coefficients` are c_k, `centre` is V₀, `width` is w and `adhesion` is s (m²/s²). e is 0 for V ≤
+    `sticks_below` and where the formula is negative, and 1 for V ≤ `elastic_below`. At
+    `adhesive_below`, adhesion lowers e² by 0.01. Only points that the grid resolves are fitted:
+    `worst` is the largest difference at them, and `between` estimates the largest error between
+    them, from `worst` and the leave-one-out residuals.
     """
 
     coefficients: tuple[float, ...]
@@ -85,11 +76,7 @@ class CompactFit:
     between: float
 
     def restitution(self, velocity: ArrayLike) -> Array:
-        """Coefficient of restitution at `velocity` (m/s, any shape).
-
-        NaN outside the range from `lowest` to `highest`, even where `velocity` is below
-        `elastic_below` or `sticks_below`.
-        """
+        """COR at `velocity` (m/s, any shape); NaN outside `lowest` to `highest`."""
         V = np.asarray(velocity, dtype=float)
         L = np.log(V / self.centre) / self.width
         polynomial = np.polynomial.polynomial.polyval(L, self.coefficients)
@@ -106,12 +93,10 @@ class CompactFit:
 class FittedLaw:
     """A force law of DEM codes, fitted to the computed COR.
 
-    The keys of `parameters` include the units. `restitution` is the COR of the force law at the
-    computed velocities. It is None where the force law has no solution, and outside
-    `Law.fitted_range`. `rms` is the root mean square difference from the computed COR, and `worst`
-    the largest difference. Both use only the points at which the grid resolves the contact.
-    `pull_off_misfit` is the largest relative difference from the computed pull-off force; None if
-    the law was not fitted to it.
+    The keys of `parameters` end with the units. `restitution` is its COR at the computed
+    velocities; None where it has no solution, and outside `Law.fitted_range`. `rms` and `worst` are
+    differences from the computed COR at resolved points, and `pull_off_misfit` the largest relative
+    difference from the computed pull-off force; None if it was not fitted to it.
     """
 
     name: str
@@ -150,11 +135,10 @@ class Estimate:
 class Law:
     """Coefficient of restitution against impact velocity for one pair, in SI units.
 
-    `radius`, `contact_modulus` and `mass` are R*, E* and m*. `friction` is the coefficient of
-    friction of the case, or None; e does not depend on friction. Smooth bodies yield above
-    `yield_velocity`, and smooth elastic bodies stick up to `smooth_sticking_velocity`.
-    `sticks_below` is the velocity above which this pair rebounds, with its error. It is None if the
-    pair sticks at no velocity, or at every computed one.
+    `radius`, `contact_modulus` and `mass` are R*, E* and m*. `friction` is the coefficient of the
+    case; e does not depend on it. Smooth bodies yield above `yield_velocity`, and smooth elastic
+    bodies stick up to `smooth_sticking_velocity`. This pair rebounds above `sticks_below`; None if
+    it sticks at no velocity, or at every computed one.
     """
 
     title: str
@@ -172,7 +156,7 @@ class Law:
     smooth_sticking_velocity: float | None
     sticks_below: float | None
     sticks_below_error: float | None = None
-    points: Annotated[tuple[Point, ...], Field(min_length=1)]
+    points: Annotated[tuple[LawPoint, ...], Field(min_length=1)]
     fit: CompactFit | None = None
     laws: tuple[FittedLaw, ...] = ()
     warnings: tuple[str, ...] = ()
@@ -210,10 +194,7 @@ class Law:
 
     @property
     def fitted_range(self) -> tuple[float, float] | None:
-        """The lowest and the highest velocity (m/s) at which the grid resolves the contact.
-
-        Fits are valid between these velocities. None if the grid resolves no contact.
-        """
+        """Lowest and highest resolved velocity (m/s), the range of all fits; None without one."""
         V = self.column("velocity", resolved=True)
         return (float(V[0]), float(V[-1])) if V.size else None
 
@@ -224,20 +205,15 @@ class Law:
         return np.asarray((low * (1 - _SAME) <= V) & (high * (1 + _SAME) >= V))
 
     def column(self, name: str, *, resolved: bool = False) -> Array:
-        """Values of the field `name` at the points, shape (points,).
-
-        If `resolved` is true, only points at which the grid resolves the contact are included.
-        """
+        """Values of the field `name`, shape (points,); only of `resolved` points if asked for."""
         points = [point for point in self.points if point.resolved or not resolved]
         return np.array([getattr(point, name) for point in points], dtype=float)
 
     def at(self, velocity: float) -> Estimate:
-        """Estimate COR at `velocity` (m/s).
+        """Interpolate COR at `velocity` (m/s).
 
-        The error of the estimate is the sum of two parts: the error of the points, interpolated
-        linearly in ln V, and the error of COR due to the interpolation of W_u/W_l
-        (`RatioCurve.error`). The sum is continuous in V. Raises `DomainError` outside the computed
-        velocities.
+        The error is that of the points, linear in ln V, plus that of the interpolation
+        (`RatioCurve.error`). Raises `DomainError` outside the computed velocities.
         """
         if not self.lowest * (1 - _SAME) <= velocity <= self.highest * (1 + _SAME):
             raise DomainError(
@@ -261,16 +237,13 @@ class Law:
         )
 
     def restitution(self, velocity: ArrayLike) -> Array:
-        """COR at `velocity` (m/s, any shape), interpolated as by `at`.
-
-        Raises `DomainError` outside the computed velocities.
-        """
+        """COR at `velocity` (m/s, any shape), as by `at`. Raises `DomainError`."""
         V = np.asarray(velocity, dtype=float)
         e = [self.at(v).restitution for v in V.ravel().tolist()]
         return np.asarray(np.reshape(e, V.shape)[()])
 
     def curve(self) -> RatioCurve:
-        """Ratio of unloading to loading work W_u/W_l, interpolated between the velocities."""
+        """W_u/W_l, interpolated between the velocities."""
         return RatioCurve(
             self.column("velocity"), self.column("ratio"), adhesive=self.work_of_adhesion > 0
         )
@@ -299,7 +272,7 @@ class Law:
         e = self.column("restitution")
         parts = [
             f"sticks below {self.sticking}" if self.sticks_below else "",
-            f"fits: {', '.join(each.name for each in self.laws)}" if self.laws else "not fitted",
+            f"fits: {', '.join(fit.name for fit in self.laws)}" if self.laws else "not fitted",
             counted(len(self.warnings), "warning") if self.warnings else "",
         ]
         return [
@@ -317,7 +290,7 @@ STORED_LAW = TypeAdapter(Law)
 
 
 def velocity_of(text: str) -> float:
-    """Return the velocity (m/s) that a text such as "0.5 m/s" gives. Raises `CaseError`."""
+    """The velocity (m/s) that a text such as "0.5 m/s" gives. Raises `CaseError`."""
     try:
         return read_positive(text, "m/s")
     except ValueError as error:

@@ -1,8 +1,4 @@
-"""Read and write the files of a restitution law, and write a table of theories.
-
-`law.json` holds the complete law. `table.csv` (the points) and `laws.csv` (the fitted force laws)
-hold parts of it as tables.
-"""
+"""Read and write restitution laws: `law.json`, with the tables `table.csv` and `laws.csv`."""
 
 from __future__ import annotations
 
@@ -14,8 +10,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from restitution.errors import CaseError, OutputError, first_problem
-from restitution.laws.law import STORED_LAW, Array, Law
-from restitution.laws.theories import Theory
+from restitution.laws.law import STORED_LAW, Law
 from restitution.results.checksums import check_file
 from restitution.results.interruption import hold_signals
 from restitution.results.writer import make_folder, replace_file, write_checksums, write_table
@@ -26,7 +21,7 @@ LAWS, MIXTURE_FILE = "laws", "mixture.toml"
 
 
 def write_law(law: Law, out: Path) -> list[Path]:
-    """Write every file of `law` into `out`, which must be new or empty. Raises `OutputError`."""
+    """Write `law` into `out`, which must be new or empty. Raises `OutputError`."""
     make_folder(out)
     text = STORED_LAW.dump_json(law, indent=2).decode() + "\n"
     names = [LAW_FILE, "table.csv"]
@@ -41,9 +36,9 @@ def write_law(law: Law, out: Path) -> list[Path]:
 
 
 def read_law(folder: Path) -> Law:
-    """Read a law. `folder` is an output folder of `restitution fit-law`, or its file `law.json`.
+    """Read a law from a folder of `restitution fit-law`, or from its file `law.json`.
 
-    Raises `OutputError` if there is no law or its checksum differs, and `CaseError` if the file is
+    Raises `OutputError` if there is none or its checksum differs, and `CaseError` if the file is
     not a law of this version.
     """
     path = folder / LAW_FILE if folder.is_dir() else folder
@@ -64,14 +59,11 @@ def read_law(folder: Path) -> Law:
 
 
 def read_laws(folders: Sequence[Path]) -> list[Law]:
-    """Read the law of each `fit-law` folder, and all laws of each mixture folder.
-
-    Raises the errors of `read_law`.
-    """
-    found: list[Law] = []
+    """Read the law of each `fit-law` folder, and all laws of each mixture folder."""
+    laws: list[Law] = []
     for folder in folders:
-        found += map(read_law, _of_mixture(folder) if is_mixture(folder) else [folder])
-    return found
+        laws += map(read_law, _of_mixture(folder) if is_mixture(folder) else [folder])
+    return laws
 
 
 def is_mixture(folder: Path) -> bool:
@@ -80,7 +72,6 @@ def is_mixture(folder: Path) -> bool:
 
 
 def _of_mixture(folder: Path) -> list[Path]:
-    """Folders of the laws of the mixture in `folder`. Raises `OutputError` if it is incomplete."""
     if not (folder / LAWS).is_dir() or not (folder / "summary.json").is_file():
         raise OutputError(
             f"{folder}: the mixture is not complete; finish it with `restitution mixture MIXTURE "
@@ -89,22 +80,8 @@ def _of_mixture(folder: Path) -> list[Path]:
     return sorted((folder / LAWS).iterdir())
 
 
-def write_theories(velocities: Array, found: list[Theory], out: Path) -> Path:
-    """Write `theory.csv` into `out`, which must be new or empty. Raises `OutputError`.
-
-    `found` contains the COR of each theory at `velocities` (m/s).
-    """
-    make_folder(out)
-    rows = [
-        {"velocity_m_per_s": float(V), **{each.name: float(each.restitution[k]) for each in found}}
-        for k, V in enumerate(velocities)
-    ]
-    write_table(out / "theory.csv", rows)
-    return out / "theory.csv"
-
-
 def law_rows(law: Law) -> list[dict[str, float | str]]:
-    """Return a table row for each point of `law`; every row repeats the values of the whole law."""
+    """A table row for each point of `law`; every row repeats the values of the whole law."""
     V = law.column("velocity")
     fit = np.full(V.shape, math.nan) if law.fit is None else law.fit.restitution(V)
     return [

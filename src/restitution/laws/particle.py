@@ -1,4 +1,4 @@
-"""One body of a restitution law, and the rule that says whether two bodies are one type."""
+"""One body of a restitution law, and when two bodies are one type."""
 
 from __future__ import annotations
 
@@ -25,9 +25,8 @@ Share = Annotated[float, Field(ge=0, le=1)]
 class Particle:
     """One body of the pair, in SI units. `radius` is None for a flat wall.
 
-    `name` is the material, or "first" or "second" if the case names none. In a mixture,
-    `number_fraction` is the number of particles of this size divided by the number of all particles
-    of the same material.
+    `name` is the material, or "first" or "second" if the case names none. `number_fraction` is the
+    share of this size in the particles of its material.
     """
 
     name: str
@@ -91,7 +90,6 @@ class Particle:
 
 
 def _same(one: str | float | None, other: str | float | None) -> bool:
-    """Whether two values are equal within rounding."""
     if isinstance(one, float) and isinstance(other, float):
         return math.isclose(one, other, rel_tol=_DIGITS)
     return one == other

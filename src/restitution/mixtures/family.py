@@ -1,10 +1,8 @@
 """Families: all pairs of particles from two components of a mixture.
 
-Smooth spheres without adhesion obey a scaling law. With lengths in units of the reduced radius R*,
-the contact depends only on W/R*³, where W is the loading work. The masses and the two radii have no
-other influence. Roughness and adhesion have lengths that do not scale with R*. Therefore, COR of
-all pairs of a family is one function of W/R*³ and R*. With the reduced mass m* and the impact
-velocity V, W/R*³ is ½ κ V² with κ = m*/R*³. `Family.case` writes the case file for one value of R*.
+Smooth spheres without adhesion scale: their contact depends only on W/R*³ = ½ κ V², κ = m*/R*³,
+with the loading work W. Roughness and adhesion have lengths that do not scale, so COR of a family
+is one function of W/R*³ and R*.
 """
 
 from __future__ import annotations
@@ -34,8 +32,8 @@ _PER_WAVE = 5  # number of nodes per correlation length, or per shortest wavelen
 
 
 @dataclass(frozen=True)
-class Meeting:
-    """Two particles that can meet, with their reduced radius R* (m) and reduced mass m* (kg)."""
+class ParticlePair:
+    """Two particles that can meet, with R* (m) and m* (kg)."""
 
     first: Particle
     second: Particle
@@ -44,7 +42,7 @@ class Meeting:
 
     @property
     def kappa(self) -> float:
-        """Ratio κ = m*/R*³ (kg/m³); for the loading work W at velocity V, W/R*³ = ½ κ V²."""
+        """κ = m*/R*³ (kg/m³)."""
         return self.mass / self.radius**3
 
 
@@ -62,38 +60,32 @@ class Family:
         return f"{self.first.name}+{self.second.name}"
 
     @cached_property
-    def meetings(self) -> tuple[Meeting, ...]:
-        """All pairs of a particle of `first` and a particle of `second`, each pair once."""
+    def pairs(self) -> tuple[ParticlePair, ...]:
+        """Each pair of a particle of `first` and one of `second`, once."""
         ours, theirs = _particles(self.first), _particles(self.second)
         if self.second is self.first:
-            return tuple(
-                itertools.starmap(_meeting, itertools.combinations_with_replacement(ours, 2))
-            )
-        return tuple(itertools.starmap(_meeting, itertools.product(ours, theirs)))
+            return tuple(itertools.starmap(_pair, itertools.combinations_with_replacement(ours, 2)))
+        return tuple(itertools.starmap(_pair, itertools.product(ours, theirs)))
 
     @cached_property
     def radii(self) -> tuple[float, ...]:
-        """The reduced radii (m) of all pairs, increasing.
-
-        Radii that differ by at most 1e-9 (relative) count as one.
-        """
-        found: list[float] = []
-        for radius in sorted(meeting.radius for meeting in self.meetings):
-            if not found or radius > found[-1] * (1 + 1e-9):
-                found.append(radius)
-        return tuple(found)
+        """The reduced radii (m) of all pairs, increasing; within 1e-9 they count as one."""
+        radii: list[float] = []
+        for radius in sorted(pair.radius for pair in self.pairs):
+            if not radii or radius > radii[-1] * (1 + 1e-9):
+                radii.append(radius)
+        return tuple(radii)
 
     def case(self, radius: float) -> str:
-        """Write the text of the case for the reduced `radius` R* (m).
+        """The text of the case for the reduced `radius` R* (m).
 
-        The velocities of the case cover the range of W/R*³ of every pair of the family. W is the
-        loading work.
+        Its velocities cover the range of W/R*³ of every pair.
         """
         return tomli_w.dumps(self._content(radius, self._grid))
 
     @cached_property
     def _grid(self) -> dict[str, Any]:
-        """Make the table `[grid]`. It is the same for all reduced radii, and so is the surface."""
+        """The same for all reduced radii, and so is the surface."""
         if self.mixture.grid is not None:
             return {"refine": "auto", **self.mixture.grid}
         probe = {"nodes": 64, "spacing": "1 um"}
@@ -134,39 +126,32 @@ class Family:
         }
 
     def _velocities(self, radius: float) -> list[float]:
-        """Velocities (m/s) of the case for the reduced `radius` (m).
-
-        They include the velocities of the mixture. Lower and higher velocities are added until the
-        case covers the range of W/R*³ of every pair of the family. W is the loading work.
-        """
-        asked = self.mixture.velocities
+        """Those of the mixture, and lower and higher ones until W/R*³ of every pair is covered."""
+        given = self.mixture.velocities
         own = _particle(self.first, radius if self.second.wall else 2 * radius)
         other = _particle(self.second, None if self.second.wall else 2 * radius)
-        kappa = _meeting(own, other).kappa
-        scales = [math.sqrt(meeting.kappa / kappa) for meeting in self.meetings]
-        low, high = asked[0] * min(scales), asked[-1] * max(scales)
-        count = len(asked) - 1
-        step = (asked[-1] / asked[0]) ** (1 / count) if count else 1.5
-        below = _steps(asked[0], low, 1 / step)
-        return [*below[::-1], *asked, *_steps(asked[-1], high, step)]
+        kappa = _pair(own, other).kappa
+        scales = [math.sqrt(pair.kappa / kappa) for pair in self.pairs]
+        low, high = given[0] * min(scales), given[-1] * max(scales)
+        count = len(given) - 1
+        step = (given[-1] / given[0]) ** (1 / count) if count else 1.5
+        below = _steps(given[0], low, 1 / step)
+        return [*below[::-1], *given, *_steps(given[-1], high, step)]
 
 
 def families(mixture: Mixture) -> list[Family]:
-    """Make the families of a mixture. Raises `CaseError` if the case of a family is invalid."""
+    """The families of a mixture. Raises `CaseError` if the case of a family is invalid."""
     pairs = itertools.combinations_with_replacement(mixture.components, 2)
     # `mixture.components` lists walls after materials, so a wall is always the second of a pair.
-    found = [Family(mixture, first, second) for first, second in pairs if not first.wall]
-    for family in found:
+    pairings = [Family(mixture, first, second) for first, second in pairs if not first.wall]
+    for family in pairings:
         for radius in (family.radii[0], family.radii[-1]):
             family._parsed(radius, family._grid)
-    return found
+    return pairings
 
 
 def _steps(start: float, end: float, step: float) -> list[float]:
-    """Velocities from `start` (excluded) to `end`, each about `step` times the previous one.
-
-    The result is empty if `start` and `end` are equal.
-    """
+    """Velocities from `start` (excluded) to `end`, each about `step` times the one before."""
     distance = math.log(end / start) / math.log(step)
     if distance < 1e-6:
         return []
@@ -175,10 +160,9 @@ def _steps(start: float, end: float, step: float) -> list[float]:
 
 
 def _another(table: dict[str, Any], others: list[dict[str, Any]]) -> dict[str, Any]:
-    """Copy a roughness `table` and change it to an independent surface for the second body.
+    """A roughness like `table`, independent of `others`.
 
-    The new seed (or place on the scan) differs from those in `others`. With the same seed, two
-    surfaces would have the same phases, and their waves would add up.
+    With the same seed, two surfaces would have the same phases, and their waves would add up.
     """
     random = table.get("kind") != "measured" or table.get("extend") == "twin"
     key = "seed" if random else "place"
@@ -203,7 +187,6 @@ def _particle(
 
 
 def _particles(component: Component) -> list[Particle]:
-    """Make a particle for each size, or the flat wall."""
     if component.wall:
         return [_particle(component, None)]
     return [
@@ -212,14 +195,14 @@ def _particles(component: Component) -> list[Particle]:
     ]
 
 
-def _meeting(first: Particle, second: Particle) -> Meeting:
+def _pair(first: Particle, second: Particle) -> ParticlePair:
     bodies = (
         Body(body.radius or math.inf, body.youngs_modulus, body.poissons_ratio, body.density)
         for body in (first, second)
     )
     pair = Pair(*bodies)
     assert pair.mass is not None  # `parse_mixture` requires the density of every material
-    return Meeting(first, second, pair.radius, pair.mass)
+    return ParticlePair(first, second, pair.radius, pair.mass)
 
 
 def _half_width(case: Case) -> float:
@@ -231,7 +214,6 @@ def _half_width(case: Case) -> float:
 
 
 def _spacing(part: Any) -> float:
-    """Largest grid spacing (m) that resolves the waves of a generated roughness."""
     waves = [getattr(part, name, None) for name in ("correlation_length", "shortest")]
     lengths = [min(wave) if isinstance(wave, tuple) else wave for wave in waves]
     return min((length / _PER_WAVE for length in lengths if length), default=math.inf)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
@@ -19,18 +20,19 @@ from restitution.case.roughness import Roughness
 from restitution.case.schema import GridTable, ImpactTable, PairOf, Table
 from restitution.display import quantity
 from restitution.errors import CaseError
-from restitution.mixtures.fractions import number_fractions
 
 MOST_SIZES = 50  # largest number of sizes of one material
+_FRACTIONS = ("mass_fractions", "number_fractions")
+# Largest allowed deviation of the sum of fractions from 1. Given fractions are often rounded.
+_OFF = 0.02
 _T = TypeVar("_T", bound=Table)
 
 
 class Sizes(Table):
-    """A table `radius` of a material: bins with edges, or a distribution that is divided into bins.
+    """A table `radius` of a material: bins with edges, or a distribution divided into bins.
 
-    Each bin counts as one size. The radius of this size is the geometric mean of the edges or, for
-    a distribution, the median of the bin. All bins of a distribution hold the same number of
-    particles.
+    The radius of a bin is the geometric mean of its edges or, of a distribution, its median; all
+    bins of a distribution hold the same number of particles.
     """
 
     edges: Annotated[list[Length] | None, Field(min_length=2, max_length=MOST_SIZES + 1)] = None
@@ -73,14 +75,8 @@ class Sizes(Table):
 class Component:
     """A material with its sizes, or a wall.
 
-    Attributes:
-        name: Name of the component in the mixture file.
-        body: Keys of a body table of a case (`[first]` or `[second]`) without `radius`, as written
-            in the mixture file.
-        material: The checked values of `body`.
-        roughness: Roughness tables.
-        radii: Radii of the sizes (m), increasing; empty for a wall.
-        fractions: Fractions by number of the sizes, with the sum 1; empty for a wall.
+    `body` is a body table of a case without `radius`, as written, and `material` its checked
+    values. `radii` (m, increasing) and `fractions` (by number, sum 1) are empty for a wall.
     """
 
     name: str
@@ -107,8 +103,6 @@ _Interface = Annotated[InterfaceTable, BeforeValidator(_with_some_adhesion)]
 
 
 class _File(Table):
-    """The keys of a mixture file, except the tables of materials and walls."""
-
     title: str = ""
     interpolation_error: Annotated[float, Field(gt=0, lt=1)] = 0.01
     interface: _Interface = InterfaceTable()
@@ -121,8 +115,8 @@ class _File(Table):
 class Mixture:
     """A checked mixture file.
 
-    `grid` is the table as written in the file. `interfaces` maps the names of two components to the
-    table `[interface]` of their pairs. The key `frozenset()` stands for all other pairs.
+    `grid` is the table as written. `interfaces` maps the names of two components to the table
+    `[interface]` of their pairs, and `frozenset()` to that of all other pairs.
     """
 
     title: str
@@ -185,7 +179,6 @@ def parse_mixture(text: str) -> Mixture:
 
 
 def _names_of(key: str, names: list[str]) -> frozenset[str]:
-    """Split the key of a pair into the names of its two components."""
     for first, second in itertools.product(names, repeat=2):
         if key == f"{first}+{second}":
             return frozenset((first, second))
@@ -211,7 +204,7 @@ def _component(key: str, name: str, table: Any) -> Component:
         raise CaseError(f"{key}.radius: is missing; give one or more radii, or size bins")
     else:
         radii = _radii(key, sizes)
-    fractions = number_fractions(key, body, sizes, radii)
+    fractions = _number_fractions(key, body, sizes, radii)
     material = _validated(BodyTable, {**body, "radius": "flat"}, key)
     if radii and material.density is None:
         raise CaseError(
@@ -223,14 +216,10 @@ def _component(key: str, name: str, table: Any) -> Component:
 
 
 class _Rough(Table):
-    """A table that is used only to check the roughness tables of a component."""
-
     roughness: list[Roughness]
 
 
 class _Radii(Table):
-    """A table that is used only to check a list of radii."""
-
     radius: Annotated[list[Length], Field(min_length=1, max_length=MOST_SIZES)]
 
 
@@ -245,8 +234,51 @@ def _radii(key: str, sizes: Any) -> tuple[float, ...]:
 
 
 def _validated(model: type[_T], table: dict[str, Any], key: str = "") -> _T:
-    """Check `table` against `model`; `key` is its dotted path in the file. Raises `CaseError`."""
     try:
         return model.model_validate(table)
     except ValidationError as error:
         raise CaseError(in_words(error, model, key)) from None
+
+
+def _number_fractions(
+    key: str, table: dict[str, Any], sizes: object, radii: Sequence[float]
+) -> tuple[float, ...]:
+    """Take the fractions from the `table` of a material; return fractions by number, sum 1.
+
+    All sizes have the same density, so a mass fraction is proportional to number times radius
+    cubed. `sizes` is the key `radius`, and `radii` (m) what it means; without fractions, all sizes
+    are equal. Raises a `CaseError` that names `key`.
+    """
+    given = [name for name in _FRACTIONS if name in table]
+    if len(given) > 1:
+        raise CaseError(f"{key}: give {_FRACTIONS[0]} or {_FRACTIONS[1]}, not both")
+    if not given:
+        return tuple(1 / len(radii) for _ in radii)
+    where = f"{key}.{given[0]}"
+    if not radii:
+        raise CaseError(f"{where}: a wall has no sizes; remove this key")
+    if isinstance(sizes, dict) and "median" in sizes:
+        raise CaseError(
+            f"{where}: the bins of a log-normal distribution always hold equal numbers of "
+            "particles; remove this key, or give edges or bins instead of median and geometric_std"
+        )
+    fractions = _checked_fractions(where, table.pop(given[0]), len(radii))
+    power = 3 if given[0] == "mass_fractions" else 0
+    numbers = [share / R**power for share, R in zip(fractions, radii, strict=True)]
+    return tuple(number / math.fsum(numbers) for number in numbers)
+
+
+def _checked_fractions(where: str, values: Any, count: int) -> list[float]:
+    if not isinstance(values, list):
+        raise CaseError(f"{where}: should be a list with a fraction for each size")
+    for value in values:
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            raise CaseError(f"{where}: {value!r} should be a number without a unit, such as 0.25")
+        if not 0 < value <= 1:
+            raise CaseError(f"{where}: {value:g} should be above 0 and at most 1")
+    if len(values) != count:
+        raise CaseError(f"{where}: has {len(values)} values for {count} sizes")
+    total = math.fsum(values)
+    if abs(total - 1) > _OFF:
+        raise CaseError(f"{where}: the sum is {total:g}, but should be 1")
+    return [float(value) for value in values]

@@ -1,12 +1,7 @@
 """Interpolate the laws of all pairs of a family between laws at a few reduced radii R*.
 
-A family contains all pairs of particles from two components of a mixture. W is the loading work.
-Unloading work divided by W is interpolated at equal W/R*³, by a monotone cubic in ln R*.
-
-`RatioCurve` estimates the error from leave-one-out residuals. Such a residual is the error at a
-computed R* if this R* is left out of the interpolation. It can be zero by chance. Therefore, the
-error at a velocity is the largest of three estimates: at this velocity, at the next lower and at
-the next higher velocity.
+W_u/W_l is interpolated at equal W_l/R*³, by a monotone cubic in ln R*. A leave-one-out residual can
+be zero by chance, so the error is the largest of those at this velocity and the next ones.
 """
 
 from __future__ import annotations
@@ -20,8 +15,8 @@ from numpy.typing import NDArray
 
 from restitution.curve.interpolation import RatioCurve
 from restitution.laws.compact_fit import compact_fit
-from restitution.laws.law import Law, Point
-from restitution.mixtures.family import Family, Meeting
+from restitution.laws.law import Law, LawPoint
+from restitution.mixtures.family import Family, ParticlePair
 
 Array = NDArray[np.float64]
 
@@ -33,8 +28,8 @@ _SAME = 1e-9  # largest relative difference of radii that count as equal
 
 
 @dataclass(frozen=True)
-class Computed:
-    """The computed laws of a family (all pairs of two components), by increasing reduced radius."""
+class FamilyLaws:
+    """The computed laws of a family, by increasing reduced radius."""
 
     family: Family
     laws: tuple[Law, ...]
@@ -48,52 +43,48 @@ class Computed:
         """Whether a law was computed at the reduced `radius` (m)."""
         return bool((np.abs(self.radii / radius - 1) < _SAME).any())
 
-    def is_good(self, meeting: Meeting) -> bool:
+    def is_good(self, pair: ParticlePair) -> bool:
         """Whether the law of the pair is accurate enough without a law at another reduced radius.
 
-        At every velocity, the error of COR due to interpolation in R* must not exceed the larger of
-        two limits. One is the `interpolation_error` given for the mixture. The other is a quarter
-        of the error of the computed laws, but not more than 0.05.
+        Its interpolation error may be `interpolation_error` of the mixture, or a quarter of the
+        error of the computed laws, at most 0.05.
         """
-        points, errors = self._points(meeting), self.interpolation_errors(meeting)
+        points, errors = self._points(pair), self.interpolation_errors(pair)
         limit = self.family.mixture.interpolation_error
         return all(
             error <= max(limit, min(_SHARE * (point.error - error), _MOST))
             for point, error in zip(points, errors, strict=True)
         )
 
-    def interpolation_errors(self, meeting: Meeting) -> list[float]:
+    def interpolation_errors(self, pair: ParticlePair) -> list[float]:
         """The error of COR due to interpolation in R*, at each velocity of the mixture."""
-        curves = self._curves(meeting)
-        if self.has(meeting.radius):
+        curves = self._curves(pair)
+        if self.has(pair.radius):
             return [0.0] * len(curves)
         return [
-            _error_of(curve, meeting.radius, curves[max(k - 1, 0) : k + 2])
+            _error_of(curve, pair.radius, curves[max(k - 1, 0) : k + 2])
             for k, curve in enumerate(curves)
         ]
 
-    def law(self, meeting: Meeting) -> Law:
-        """The law of one pair at the velocities of the mixture.
-
-        The error of a point is the error of the computed laws plus the interpolation error.
-        """
-        nearest = self.laws[int(np.abs(np.log(self.radii / meeting.radius)).argmin())]
+    def law(self, pair: ParticlePair) -> Law:
+        """The law of one pair at the velocities of the mixture, with its interpolation error."""
+        nearest = self.laws[int(np.abs(np.log(self.radii / pair.radius)).argmin())]
         kappa = nearest.mass / nearest.radius**3
-        slower = (meeting.radius / nearest.radius) ** (2 / 3)
-        slower *= math.sqrt(nearest.mass / meeting.mass)
-        how = "computed" if self.has(meeting.radius) else "interpolated in R* at equal W/R*^3"
+        slower = (pair.radius / nearest.radius) ** (2 / 3)
+        slower *= math.sqrt(nearest.mass / pair.mass)
+        how = "computed" if self.has(pair.radius) else "interpolated in R* at equal W/R*^3"
         law = replace(
             nearest,
             title=self.family.mixture.title or self.family.name,
-            first=meeting.first,
-            second=meeting.second,
-            radius=meeting.radius,
-            mass=meeting.mass,
+            first=pair.first,
+            second=pair.second,
+            radius=pair.radius,
+            mass=pair.mass,
             model={**nearest.model, "pair": how},
-            yield_velocity=_scaled(nearest.yield_velocity, math.sqrt(kappa / meeting.kappa)),
+            yield_velocity=_scaled(nearest.yield_velocity, math.sqrt(kappa / pair.kappa)),
             smooth_sticking_velocity=_scaled(nearest.smooth_sticking_velocity, slower),
             sticks_below_error=_scaled(nearest.sticks_below_error, slower),
-            points=self._points(meeting),
+            points=self._points(pair),
             fit=None,
             laws=(),
         )
@@ -101,50 +92,46 @@ class Computed:
         law = replace(law, sticks_below=None if law.sticks_everywhere else below)
         return replace(law, fit=compact_fit(law))
 
-    def _points(self, meeting: Meeting) -> tuple[Point, ...]:
-        velocities, curves = self.family.mixture.velocities, self._curves(meeting)
-        errors = self.interpolation_errors(meeting)
+    def _points(self, pair: ParticlePair) -> tuple[LawPoint, ...]:
+        velocities, curves = self.family.mixture.velocities, self._curves(pair)
+        errors = self.interpolation_errors(pair)
         return tuple(
-            self._point(meeting, V, curve, error)
+            self._point(pair, V, curve, error)
             for V, curve, error in zip(velocities, curves, errors, strict=True)
         )
 
-    def _curves(self, meeting: Meeting) -> list[RatioCurve]:
-        """Make the curve of the work ratio W_u/W_l against R* for each velocity of the mixture."""
+    def _curves(self, pair: ParticlePair) -> list[RatioCurve]:
         ratios = (
-            np.array([law.curve().at(_of(law, V, meeting)) for law in self.laws], dtype=float)
+            np.array([law.curve().at(_of(law, V, pair)) for law in self.laws], dtype=float)
             for V in self.family.mixture.velocities
         )
-        return [RatioCurve(self.radii, each, adhesive=False) for each in ratios]
+        return [RatioCurve(self.radii, ratio, adhesive=False) for ratio in ratios]
 
-    def _point(self, meeting: Meeting, V: float, curve: RatioCurve, between: float) -> Point:
-        ratio = _value(curve, meeting.radius)
-        after, t = curve.interval(meeting.radius) if len(self.laws) > 1 else (1, 0.0)
+    def _point(self, pair: ParticlePair, V: float, curve: RatioCurve, between: float) -> LawPoint:
+        ratio = _value(curve, pair.radius)
+        after, t = curve.interval(pair.radius) if len(self.laws) > 1 else (1, 0.0)
         laws = self.laws[after - 1 : after + 1]
         shares = (1 - t, t)[: len(laws)]
-        estimates = [law.at(_of(law, V, meeting)) for law in laws]
+        estimates = [law.at(_of(law, V, pair)) for law in laws]
         used = [k for k, share in enumerate(shares) if share > _SAME]
 
         def mean(name: str, power: int) -> float:
-            """Interpolate the field `name` between the laws at the next lower and higher R*.
-
-            The interpolated quantity is the field divided by R*^power.
-            """
-            R = meeting.radius
+            """Interpolate the field `name` over R*^power between the laws at the next R*."""
+            R = pair.radius
             return R**power * sum(
                 shares[k]
-                * _column_at(laws[k], name, _of(laws[k], V, meeting))
+                * _column_at(laws[k], name, _of(laws[k], V, pair))
                 / laws[k].radius ** power
                 for k in used
             )
 
         pull_off = [point.pull_off_force for law in laws for point in law.points]
-        return Point(
+        return LawPoint(
             velocity=V,
             restitution=_root(ratio),
             error=sum(shares[k] * estimates[k].error for k in used) + between,
             ratio=ratio,
-            loading_work=0.5 * meeting.mass * V * V,
+            loading_work=0.5 * pair.mass * V * V,
             indentation=mean("indentation", 1),
             force=mean("force", 2),
             pull_off_force=None if None in pull_off else mean("pull_off_force", 1),
@@ -152,13 +139,12 @@ class Computed:
         )
 
 
-def _of(law: Law, V: float, meeting: Meeting) -> float:
-    """Velocity (m/s) at which W/R*³ of `law` equals W/R*³ of the pair `meeting` at `V` (m/s).
+def _of(law: Law, V: float, pair: ParticlePair) -> float:
+    """Velocity (m/s) at which W/R*³ of `law` equals that of `pair` at `V` (m/s).
 
-    W is the loading work, and R* the reduced radius. If the velocity is outside the range of `law`
-    by at most 1e-3 (relative), the nearest velocity of this range is returned.
+    The nearest velocity of `law` if it is outside by at most 1e-3.
     """
-    velocity = V * math.sqrt(meeting.kappa / (law.mass / law.radius**3))
+    velocity = V * math.sqrt(pair.kappa / (law.mass / law.radius**3))
     near = law.lowest * (1 - 1e-3) <= velocity <= law.highest * (1 + 1e-3)
     return min(max(velocity, law.lowest), law.highest) if near else velocity
 
@@ -168,11 +154,6 @@ def _value(curve: RatioCurve, radius: float) -> float:
 
 
 def _error_of(curve: RatioCurve, radius: float, near: list[RatioCurve]) -> float:
-    """The interpolation error of COR at the reduced `radius` (m), at one velocity.
-
-    `curve` is the ratio of unloading to loading work against reduced radius at this velocity.
-    `near` contains `curve` and the curves at the next lower and higher velocity.
-    """
     ratio = _value(curve, radius)
     off = max(other.error(radius) for other in near)
     e = _root(ratio)
@@ -180,11 +161,7 @@ def _error_of(curve: RatioCurve, radius: float, near: list[RatioCurve]) -> float
 
 
 def _column_at(law: Law, name: str, velocity: float) -> float:
-    """Interpolate the field `name` of the points of `law` at `velocity` (m/s).
-
-    Between two points, the logarithm of the field is linear in the logarithm of the velocity. If
-    any value is not positive, the field itself is linear in the logarithm of the velocity.
-    """
+    """The field `name` at `velocity` (m/s): a power of it or, if not positive, linear in ln V."""
     L, values = np.log(law.column("velocity")), law.column(name)
     if (values <= 0).any():
         return float(np.interp(math.log(velocity), L, values))

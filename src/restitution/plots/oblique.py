@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from restitution.case.case_file import parse_case
-from restitution.laws.full_slip import full_slip_angle, full_slip_restitution
+from restitution.impacts.oblique import full_slip_angle, full_slip_restitution
 from restitution.plots.figure import (
     DASHED,
     GREY,

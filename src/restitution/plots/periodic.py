@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
+from restitution.compare.area_theory import AreaTheory
 from restitution.display import quantity
-from restitution.laws.area_theory import AreaTheory
 from restitution.plots.figure import (
     DASHED,
     GREY,

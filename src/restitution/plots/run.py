@@ -8,14 +8,14 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from restitution.contact.checks.resolution import NODES_PER_PATCH
-from restitution.display import quantity
-from restitution.laws.references import (
+from restitution.compare.references import (
     Reference,
     force_references,
     restitution_references_by_indentation,
     restitution_references_by_velocity,
 )
+from restitution.contact.checks.resolution import NODES_PER_PATCH
+from restitution.display import quantity
 from restitution.plots.cor import IMPACT_VELOCITY, INDENTATION, Abscissa, bars, cor_chart
 from restitution.plots.figure import (
     DASH_DOTTED,

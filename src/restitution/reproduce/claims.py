@@ -16,7 +16,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from restitution.sweeps.coordinates import AS_WRITTEN
+from restitution.sweeps.sweep import AS_WRITTEN
 from restitution.theory import JKR, Hertz, ThorntonNing
 
 Array = NDArray[np.float64]

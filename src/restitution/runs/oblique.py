@@ -1,4 +1,4 @@
-"""The oblique impacts of a case, from the curves of its run (`laws.oblique`).
+"""The oblique impacts of a case, from the curves of its run (`impacts.oblique`).
 
 The run has a depth for the normal velocity V cos θ of each impact, and every depth is unloaded. So
 the maximum indentation of each impact is a computed depth, with a computed unloading curve.
@@ -22,8 +22,8 @@ from restitution.curve.curve import Curve, UnloadingCurve
 from restitution.curve.oblique import MeanObliquePoint, ObliquePoint
 from restitution.curve.point import Point
 from restitution.errors import CaseError, DomainError, NotConvergedError, OutputError
-from restitution.laws.oblique import ObliqueCollision, collide_obliquely, spin_per_impulse
-from restitution.laws.time_integration import StoredForce, force_of
+from restitution.impacts.oblique import ObliqueCollision, collide_obliquely, spin_per_impulse
+from restitution.impacts.time_integration import StoredForce, force_of
 from restitution.results.writer import ResultsFolder, curve_variables
 from restitution.surfaces import Surface
 

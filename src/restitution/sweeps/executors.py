@@ -1,35 +1,51 @@
-"""Processes that compute cases, on this machine or on a Dask cluster.
-
-For both kinds of processes, `Workers` holds a `concurrent.futures.Executor`, the number of cases
-that it computes at a time, and a channel for progress. So `scheduler` treats both kinds alike.
-"""
+"""Processes that compute cases, on this machine or on a Dask cluster."""
 
 from __future__ import annotations
 
+import itertools
 import multiprocessing
 import os
 import signal
+import tempfile
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import dataclass
 from multiprocessing.managers import SyncManager
-from typing import Any
+from pathlib import Path
+from typing import Any, Protocol
 
-from restitution.errors import CaseError, OutputError
+from restitution.errors import CaseError, OutputError, RestitutionError, one_line
 from restitution.results.interruption import hold_signals
-from restitution.sweeps.task import Channel
 
 PATIENCE = "15s"  # timeout of the connection to a Dask scheduler
+
+
+class Channel(Protocol):
+    """A channel for the messages of a worker about its progress."""
+
+    def put(self, message: tuple[int, int], /) -> object:
+        """Send the number of a case, and the number of its depths done."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The files of the results folder of a case, and the `reason` if it failed, else "".
+
+    A failed case has only the files that were written before the failure.
+    """
+
+    files: dict[str, bytes]
+    reason: str
 
 
 @dataclass(frozen=True)
 class Workers:
     """An executor that computes `places` cases at a time, each with `threads` threads.
 
-    After a process has died, `renewed` makes a new executor, which computes a given number of cases
-    at a time. `heard` returns the messages that arrived through `channel` since its last call.
+    After a process has died, `renewed` makes a new executor for a number of cases at a time.
+    `heard` returns the messages that arrived through `channel` since its last call.
     """
 
     executor: Executor
@@ -41,10 +57,7 @@ class Workers:
 
 
 def chosen_workers(count: int | None, scheduler: str | None) -> AbstractContextManager[Workers]:
-    """Provide the workers of the Dask cluster at `scheduler`, or `count` local processes.
-
-    Raises `CaseError` if both are given.
-    """
+    """Workers of the Dask cluster at `scheduler`, or `count` processes. Raises `CaseError`."""
     if scheduler is not None and count is not None:
         raise CaseError(
             "--workers, --scheduler: give only one of them; --workers is the number of processes "
@@ -55,7 +68,7 @@ def chosen_workers(count: int | None, scheduler: str | None) -> AbstractContextM
 
 @contextmanager
 def local_workers(count: int | None) -> Iterator[Workers]:
-    """Provide `count` processes that share the cores of this machine; by default one per core."""
+    """`count` processes that share the cores of this machine; by default one per core."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     places = count or cores or 1
     threads = max(1, (cores or 1) // places)
@@ -78,10 +91,9 @@ def local_workers(count: int | None) -> Iterator[Workers]:
 
 
 class _Pool(ProcessPoolExecutor):
-    """A pool that blocks Ctrl-C in its processes. Processes start when tasks are submitted.
+    """Ctrl-C is blocked in its processes, which start when tasks are submitted.
 
-    At the end of a `with` body, running cases are stopped, because nothing would store their
-    results.
+    At the end of a `with` body, running cases are stopped: nothing would store their results.
     """
 
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
@@ -99,8 +111,8 @@ class _Pool(ProcessPoolExecutor):
 def _without_interrupts() -> Iterator[None]:
     """Block SIGINT in processes that start in the `with` body.
 
-    Ctrl-C sends SIGINT to all processes of a terminal. A new process ignores SIGINT as soon as it
-    has called `_serve`. Before that, an unblocked SIGINT would end it with a traceback.
+    Ctrl-C sends SIGINT to all processes of a terminal. Until a new process has called `_serve`, an
+    unblocked SIGINT would end it with a traceback.
     """
     if not hasattr(signal, "pthread_sigmask"):  # Windows lacks this function
         yield
@@ -120,7 +132,6 @@ def _without_interrupts() -> Iterator[None]:
 
 
 def _serve() -> None:
-    """Ignore SIGINT, and end when the parent process has ended."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent = multiprocessing.parent_process()
 
@@ -134,10 +145,7 @@ def _serve() -> None:
 
 @contextmanager
 def cluster_workers(address: str) -> Iterator[Workers]:
-    """Provide the workers of the Dask cluster whose scheduler is at `address`.
-
-    Raises `OutputError` if there is no such cluster, or if Dask is not installed.
-    """
+    """The workers of the Dask cluster whose scheduler is at `address`. Raises `OutputError`."""
     try:
         from distributed import Client, Queue
     except ImportError:
@@ -166,3 +174,37 @@ def cluster_workers(address: str) -> Iterator[Workers]:
         # limited number of times).
         executor = client.get_executor(pure=False)
         yield Workers(executor, places, 1, queue, heard, lambda _: executor)
+
+
+def compute(text: str, folder: str, number: int, threads: int, channel: Channel) -> Outcome:
+    """Run the case file `text` in this process; paths in it are relative to `folder`.
+
+    Results are returned, so workers need no shared disk, and only the main process writes.
+    """
+    # DUCC0 reads this variable only once per process, before its first transform.
+    os.environ.setdefault("DUCC0_NUM_THREADS", str(threads))
+    from restitution.case.case_file import parse_case
+    from restitution.results.writer import ResultsFolder
+    from restitution.runs.ensemble import run_realisations
+
+    depths, reason = itertools.count(1), ""
+
+    def progress(_: str) -> None:
+        channel.put((number, next(depths)))
+
+    with tempfile.TemporaryDirectory(prefix="restitution-") as temporary:
+        out = Path(temporary) / "case"
+        try:
+            run_realisations(parse_case(text), text, Path(folder), ResultsFolder(out), progress)
+        except OutputError:
+            raise
+        except RestitutionError as error:
+            reason = one_line(str(error))
+        except MemoryError:
+            reason = "the memory is too small for this case; use fewer grid.nodes"
+        files = {
+            path.relative_to(out).as_posix(): path.read_bytes()
+            for path in sorted(out.rglob("*"))
+            if path.is_file()
+        }
+    return Outcome(files, reason)

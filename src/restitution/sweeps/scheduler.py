@@ -10,10 +10,9 @@ from pathlib import Path
 
 from restitution.errors import OutputError, one_line
 from restitution.results.interruption import hold_signals
-from restitution.sweeps.executors import Workers
+from restitution.sweeps.executors import Outcome, Workers, compute
 from restitution.sweeps.study_folder import StudyFolder
 from restitution.sweeps.sweep import Study, SweptCase
-from restitution.sweeps.task import Outcome, compute
 
 _POLL = 0.2  # time between updates of the progress (s)
 _DEATHS = 3  # a case has failed if its worker died this many times
@@ -21,10 +20,7 @@ _DEATHS = 3  # a case has failed if its worker died this many times
 
 @dataclass
 class Tally:
-    """Progress of a study, in numbers of cases.
-
-    `in_flight` holds the number of completed depths of each running case, by case number.
-    """
+    """Numbers of cases; `in_flight` is the number of completed depths of each running case."""
 
     cases: int
     done: int = 0
@@ -43,10 +39,9 @@ def run_study(
 ) -> Tally:
     """Compute every case of `study` that `out` does not hold yet, and write the tables of `out`.
 
-    Paths of measured surfaces are relative to `folder`. A failed case is stored with the reason,
-    and is computed again only with `retry_failed`. Completed cases are kept even if the study is
-    interrupted or fails. If the worker of a case dies, the case is computed again, alone. A case
-    whose worker died three times has failed.
+    Paths of scans are relative to `folder`. A failed case is stored with the reason, and computed
+    again only with `retry_failed`. Completed cases are kept whatever happens. A case whose worker
+    dies is computed again, alone, and has failed after the third death.
     """
     out.clear()
     known = {case.number: out.reason(case) for case in study.cases}

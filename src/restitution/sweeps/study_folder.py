@@ -1,7 +1,6 @@
-"""The folder of a study: one folder for each case, and tables of all cases.
+"""The folder of a study: one folder for each case, and tables made anew from all cases.
 
-A case is written to a temporary folder, which is then renamed, so a case is stored completely or
-not at all. The tables are always made anew from all stored cases.
+A case is written to a temporary folder, which is then renamed: completely or not at all.
 """
 
 from __future__ import annotations
@@ -32,20 +31,17 @@ from restitution.results.writer import (
     write_table,
     writing,
 )
-from restitution.sweeps.coordinates import as_text, coordinate
-from restitution.sweeps.sweep import Study, SweptCase
-from restitution.sweeps.task import Outcome
+from restitution.sweeps.executors import Outcome
+from restitution.sweeps.sweep import Study, SweptCase, as_text, coordinate
 
 FAILED, STUDY_FILE = "failed.json", "study.toml"
 
 
 def prepare_folder(path: Path, name: str, text: str, *, resume: bool, what: str) -> None:
-    """Prepare the folder `path` for a study or a mixture.
+    """Prepare the folder `path` for a study or a mixture (`what`), whose file `name` holds `text`.
 
-    `what` is the word "study" or "mixture", for messages. `text` is the content of its file, whose
-    name in the folder is `name`. Without `resume`, the folder must be new or empty, and the file is
-    written. With `resume`, the folder must already hold a file `name` with the same `text`. Raises
-    `OutputError` otherwise, or if the folder cannot be written.
+    Without `resume`, it must be new or empty; with `resume`, it must hold the same file. Raises
+    `OutputError`.
     """
     held = path / name
     if not resume:
@@ -64,11 +60,7 @@ class StudyFolder:
     """The folder of a study: `study.toml`, `cases/case-00001/` etc., `table.csv`, `study.nc`."""
 
     def __init__(self, path: Path, study: Study, *, resume: bool) -> None:
-        """Prepare the folder for `study`.
-
-        Raises `OutputError` if the folder cannot be written. Without `resume` the folder must be
-        new or empty. With `resume` it must hold the same study.
-        """
+        """Prepare the folder for `study` (`prepare_folder`)."""
         self.path, self.study = path, study
         self._cases = path / "cases"
         prepare_folder(path, STUDY_FILE, study.text, resume=resume, what="study")
@@ -80,7 +72,7 @@ class StudyFolder:
         return locked(self.path)
 
     def folder_of(self, case: SweptCase) -> Path:
-        """Return the folder for the results of `case`."""
+        """The folder for the results of `case`."""
         return self._cases / case.name
 
     def clear(self) -> None:
@@ -104,10 +96,9 @@ class StudyFolder:
             part.rename(whole)
 
     def reason(self, case: SweptCase) -> str | None:
-        """Return why a case failed; "" if it is complete, None if it is missing or damaged.
+        """Why a case failed; "" if it is complete, None if it is missing or damaged.
 
-        A case is complete if its files pass the checks of `RunResults`. A stored case whose text
-        differs from `case` counts as missing.
+        A stored case whose text differs from `case` counts as missing.
         """
         folder = self.folder_of(case)
         try:
@@ -133,11 +124,6 @@ class StudyFolder:
         write_checksums(self.path, ["study.nc", "study.toml", "table.csv"])
 
     def _rows(self, reasons: list[str | None], curves: list[Curve]) -> list[dict[str, Any]]:
-        """Make the rows of `table.csv`.
-
-        Each row contains the swept values of a case and a row of its `curve.csv`. A case without a
-        curve has one row.
-        """
         columns = next((curve.points[0].columns() for curve in curves if curve.points), COLUMNS)
         rows = []
         for case, reason, curve in zip(self.study.cases, reasons, curves, strict=True):
@@ -148,10 +134,7 @@ class StudyFolder:
         return rows
 
     def _dataset(self, reasons: list[str | None], curves: list[Curve]) -> xr.Dataset:
-        """Make a dataset of all curves.
-
-        Its dimensions are the swept keys (or the cases, if the values are paired) and the depth.
-        """
+        """Its dimensions are the swept keys (or the cases, if paired) and the depth."""
         study, rows_of = self.study, [curve.rows for curve in curves]
         paired, depths = study.mode == "paired", max(map(len, rows_of), default=0)
         dims = ("case",) if paired else tuple(study.swept)

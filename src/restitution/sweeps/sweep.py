@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import copy
+import json
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
@@ -13,9 +14,23 @@ from typing import Any, Literal
 import tomli_w
 
 from restitution.case.case_file import naming, parse_case, parse_toml, read_text
+from restitution.case.quantities import read_quantity
 from restitution.errors import CaseError, shown
 
 MOST_CASES = 100_000
+# Units of quantities in a case file, and the same units in the notation of netCDF.
+_UNITS = {
+    "m": "m",
+    "Pa": "Pa",
+    "kg/m^3": "kg m-3",
+    "N": "N",
+    "J/m^2": "J m-2",
+    "m/s": "m s-1",
+    "rad": "rad",
+    "rad/s": "rad s-1",
+}
+AS_WRITTEN = "as_written"
+"""Name of the attribute with the values as written in the study file (a JSON list of texts)."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +51,7 @@ class SweptCase:
 class Study:
     """A checked study file, expanded into valid cases.
 
-    `swept` maps each dotted key ("roughness.rms") to its values as written in the file.
+    `swept` maps each dotted key ("roughness.rms") to its values as written.
     """
 
     title: str
@@ -90,10 +105,7 @@ def parse_study(text: str) -> Study:
 
 
 def _paths(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, list[Any]]]:
-    """Yield dotted keys and their values.
-
-    A key may be written with or without quotes: `"roughness.rms" = …` or `roughness.rms = …`.
-    """
+    """Dotted keys and values; a key may be written with or without quotes."""
     for key, value in table.items():
         if isinstance(value, dict):
             yield from _paths(value, f"{before}{key}.")
@@ -112,20 +124,18 @@ def _check_values(swept: Mapping[str, Any], mode: str) -> None:
     lengths = {key: len(values) for key, values in swept.items()}
     if mode == "paired":
         if len(set(lengths.values())) > 1:
-            each = ", ".join(f"{key} {n}" for key, n in lengths.items())
+            listed = ", ".join(f"{key} {n}" for key, n in lengths.items())
             raise CaseError(
-                f'sweep: mode = "paired" needs lists of equal length; the lengths are {each}'
+                f'sweep: mode = "paired" needs lists of equal length; the lengths are {listed}'
             )
     elif (count := math.prod(lengths.values())) > MOST_CASES:
         raise CaseError(f"sweep: gives {count} cases; reduce them to at most {MOST_CASES}")
 
 
 def put(case: dict[str, Any], path: str, value: Any) -> None:
-    """Set the key at the dotted `path` to `value`.
+    """Set the key at the dotted `path` to `value`; a number selects one of several tables, from 1.
 
-    A number in the path selects one of several tables; the first table has the number 1. Raises
-    `CaseError` if the path leads through a value, or if it does not select one of several tables
-    by a valid number.
+    Raises `CaseError` if the path leads through a value, or selects no table.
     """
     table: Any = case
     *way, last = path.split(".")
@@ -145,3 +155,30 @@ def put(case: dict[str, Any], path: str, value: Any) -> None:
             f"sweep.{path}: there are {len(table)} tables; select one by its number, as in 1.{last}"
         )
     table[last] = value
+
+
+def as_text(value: Any) -> str:
+    """A swept value as written in the study file: "0.1 um", 3, true, [1, 2]."""
+    if isinstance(value, str):
+        return value
+    return json.dumps(value, ensure_ascii=False, default=str)
+
+
+def coordinate(values: Sequence[Any]) -> tuple[list[Any], dict[str, str]]:
+    """Values and attributes of the coordinate of a swept key in `study.nc`.
+
+    Quantities of one kind become numbers in SI units; all other values but numbers become text.
+    """
+    texts = [as_text(value) for value in values]
+    attributes = {AS_WRITTEN: json.dumps(texts, ensure_ascii=False)}
+    if all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values):
+        return list(values), attributes
+    for unit, written in _UNITS.items():
+        try:
+            return [read_quantity(value, unit) for value in values], {
+                "units": written,
+                **attributes,
+            }
+        except ValueError:
+            continue
+    return texts, attributes

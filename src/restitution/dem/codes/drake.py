@@ -30,8 +30,7 @@ from dataclasses import dataclass
 
 from restitution.dem.damping import hunt_crossley_dissipation, hunt_crossley_restitution
 from restitution.dem.export_common import Export
-from restitution.dem.friction import friction_note
-from restitution.dem.pair import Pair
+from restitution.dem.pair import ExportedPair
 from restitution.dem.pair_table import PairTable
 
 CODE = "Drake"
@@ -52,10 +51,10 @@ _STEPS = 200  # number of time steps in the contact of the test collision
 
 
 @dataclass(frozen=True)
-class Contact:
+class HuntCrossleyContact:
     """The contact of a pair; `dissipation` is the coefficient d (s/m)."""
 
-    pair: Pair
+    pair: ExportedPair
     dissipation: float
 
     @property
@@ -64,25 +63,22 @@ class Contact:
         return self.pair.law.mass * (math.pi / self.pair.contact_time) ** 2
 
     def restitution(self, share: float) -> float:
-        """Return Drake's coefficient of restitution at `share` times the velocity of the export."""
+        """Drake's e at `share` times the velocity of the export."""
         return hunt_crossley_restitution(self.dissipation * self.pair.velocity * share)
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """Write a Python module with the contact parameters, and a test collision that prints e.
-
-    Returns file names and texts. Raises `CaseError`, `DomainError`.
-    """
+    """A Python module with the contact parameters, and a test collision; names and texts."""
     export = Export(table, velocity, CODE, LOWEST, _ENDS, constant=False)
     contacts = [
-        Contact(pair, hunt_crossley_dissipation(pair.restitution) / velocity)
+        HuntCrossleyContact(pair, hunt_crossley_dissipation(pair.restitution) / velocity)
         for pair in export.pairs
     ]
     return {
         FRAGMENT: export.render(
             FRAGMENT,
             contacts=contacts,
-            friction_note=friction_note(export.pairs, "#"),
+            friction_note=export.friction_note("#"),
         ),
         COLLISION: export.render(
             COLLISION,

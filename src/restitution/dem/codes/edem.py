@@ -12,10 +12,8 @@ from __future__ import annotations
 
 import math
 
-from restitution.dem.adhesion import pull_off_force
 from restitution.dem.export_common import Export, commented, identifier, number
-from restitution.dem.friction import friction_note
-from restitution.dem.pair import Pair
+from restitution.dem.pair import ExportedPair, pull_off_force
 from restitution.dem.pair_table import PairTable
 from restitution.results.writer import table_text
 
@@ -35,9 +33,9 @@ _NOTES = [
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """Write notes and the two tables; return file names and texts. Raises `DomainError`."""
+    """Notes and the two tables; names and texts. Raises `DomainError`."""
     export = Export(table, velocity, CODE, 0.0, _ENDS)
-    friction = f"{friction_note(export.pairs, '#')}\n# Rolling friction 0 is a placeholder."
+    friction = f"{export.friction_note('#')}\n# Rolling friction 0 is a placeholder."
     ending = f"{export.ending('#')}\n".lstrip()
     comments = f"{export.head('#')}\n{commented(_NOTES, '#')}\n{friction}\n{ending}"
     return {
@@ -46,7 +44,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
     } | export.notes()
 
 
-def _interaction(pair: Pair) -> dict[str, str]:
+def _interaction(pair: ExportedPair) -> dict[str, str]:
     k1, k2 = _springs(pair)
     return {
         "material_1": identifier(pair.first, pair.i),
@@ -63,13 +61,10 @@ def _interaction(pair: Pair) -> dict[str, str]:
     }
 
 
-def _springs(pair: Pair) -> tuple[float, float]:
-    """Return the stiffnesses K1 and K2 (N/m) of the Walton–Braun law fitted to the pair.
+def _springs(pair: ExportedPair) -> tuple[float, float]:
+    """Stiffnesses K1 and K2 (N/m) of the fitted Walton–Braun law; NaN outside its range.
 
-    K1 is the loading stiffness. The unloading stiffness is K2 = k_u + S V (m* K1)^½. Here V is the
-    velocity (m/s) of the export and m* the reduced mass. k_u (the unloading stiffness without
-    hardening) and S (the hardening) are fitted parameters. Both stiffnesses are NaN if there is no
-    such fit, or if V is outside the fitted range.
+    K2 = k_u + S V (m* K1)^½ at the velocity V of the export.
     """
     fit = pair.fitted("walton-braun")
     if fit is None or not pair.law.fits_hold_at(pair.velocity):

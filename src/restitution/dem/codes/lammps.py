@@ -9,21 +9,34 @@ applies the factor ½ twice, so the export does not use the mixing. Force and da
 Elliott, EPL 94 (2011) 50004) act until the overlap is zero, with tension at the end.
 `limit_damping` would cut off the tension and increase the coefficient of restitution. In released
 versions, `damping tsuji` is wrong by a factor of √2.
+
+LAMMPS 22Jul2025 has no KOKKOS variant of pair_style granular. Pull request 5187 adds a variant with
+hooke and hertz normal forces, velocity-based damping, and linear and Mindlin tangential forces.
+This variant needs the setting `newton off`. The older gran/hooke/history/kk has only one set of
+values for all pairs of types.
+
+Each pair gets a Hertz force with a constant damping coefficient (`damping velocity` in LAMMPS).
+The function `hertz_damping` of the module `damping` computes the coefficient. In this model, the
+coefficient of restitution e increases with the velocity V. The reason is that the dimensionless
+damping g (defined in `damping`) is proportional to V^{−⅕}.
+
+If there is a single type of particle, the fragment also offers a linear spring, whose e is
+constant. A contact with this spring lasts as long as a Hertz contact. LAMMPS applies the damping
+force until the overlap is zero, even if the total force is then tensile. Under this condition, the
+damping ratio ζ gives e = exp(−πζ/(1 − ζ²)^½) (Schäfer, Dippel, Wolf, J. Phys. I France 6 (1996) 5).
 """
 
 from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from restitution.dem.codes.lammps_kokkos import linear_spring, velocity_damping
 from restitution.dem.codes.lammps_mdr import mdr_offers
-from restitution.dem.export_common import STEPS, Export, number
-from restitution.dem.friction import STIFFNESS_SHARE, friction_note
-from restitution.dem.pair import Pair
+from restitution.dem.damping import hertz_damping, hertz_restitution_at
+from restitution.dem.export_common import SCRIPT, STEPS, Export, number
+from restitution.dem.pair import STIFFNESS_SHARE, ExportedPair
 from restitution.dem.pair_table import PairTable
-from restitution.dem.velocity_matching import SCRIPT, matching_script
 
 CODE = "LAMMPS"
 LOWEST = 0.001  # smallest e that is reproduced within 0.5 %, with `STEPS` time steps in a contact
@@ -52,12 +65,10 @@ _KOKKOS_ENDS = (
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """Write the input files for LAMMPS; return file names and texts.
+    """The input files for LAMMPS; names and texts. Raises `CaseError`, `DomainError`.
 
-    The files are notes, a fragment to include, a fragment for the package KOKKOS, the script
-    `match_velocity.py`, a test collision, and a packing. In the packing, spheres of all types fall
-    on a wall. There is no packing if `table` has no law between spheres, or if no wall has laws
-    with all types of spheres. Raises `CaseError`, `DomainError`.
+    There is no packing if `table` has no law between spheres, or if no wall has laws with all
+    types.
     """
     table.require_spheres(CODE)
     export = Export(table, velocity, CODE, LOWEST, _ENDS)
@@ -67,7 +78,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
     files = {
         FRAGMENT: export.render(
             FRAGMENT,
-            friction_note=friction_note(pairs, "#", _TANGENTIAL),
+            friction_note=export.friction_note("#", _TANGENTIAL),
             tangential=_tangential,
             spheres=spheres,
             walls=[pair for pair in pairs if pair.wall],
@@ -75,12 +86,12 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
         ),
         KOKKOS: kokkos.render(
             KOKKOS,
-            friction_note=friction_note(pairs, "#"),
+            friction_note=export.friction_note("#"),
             spheres=spheres,
-            damping=[velocity_damping(pair) for pair in pairs],
-            spring=linear_spring(spheres[0]) if len(spheres) == 1 else None,
+            damping=[_velocity_damping(pair) for pair in pairs],
+            spring=_linear_spring(spheres[0]) if len(spheres) == 1 else None,
         ),
-        SCRIPT: matching_script(export, "lmp -in my.in", FRAGMENT, "matched.lmp"),
+        SCRIPT: export.matching_script("lmp -in my.in", FRAGMENT, "matched.lmp"),
         COLLISION: export.render(COLLISION, size=table.largest_radius, steps=STEPS),
     }
     floor = _floor(table)
@@ -102,12 +113,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
     return files | export.notes()
 
 
-def _tangential(pair: Pair) -> str:
-    """The tangential model of a pair.
-
-    If the case has no friction, the model has Mindlin's full stiffness, which LAMMPS computes
-    (NULL). Otherwise the stiffness is `STIFFNESS_SHARE` times Mindlin's stiffness.
-    """
+def _tangential(pair: ExportedPair) -> str:
     if pair.law.friction is None:
         return f"mindlin NULL 1.0 {pair.friction}"
     stiffness = STIFFNESS_SHARE * pair.mindlin_stiffness
@@ -117,9 +123,8 @@ def _tangential(pair: Pair) -> str:
 def _counts(table: PairTable) -> list[int]:
     """Number of spheres of each type, at least one; the sum is `_GRAINS`.
 
-    The numbers are proportional to the number fractions of the types. A type without a number
-    fraction has the fraction 1. The fractions of all sizes of a material add up to 1. Therefore,
-    all materials of a mixture have the same number of spheres.
+    The fractions of all sizes of a material add up to 1, so all materials of a mixture have the
+    same number of spheres.
     """
     weights = [body.number_fraction or 1.0 for body in table.spheres]
     ends = [round(_GRAINS * part / sum(weights)) for part in itertools.accumulate(weights)]
@@ -129,11 +134,36 @@ def _counts(table: PairTable) -> list[int]:
 
 
 def _floor(table: PairTable) -> int | None:
-    """Type number of the first wall that has a law in `table` with every type of sphere.
-
-    None if there is no such wall.
-    """
     count = len(table.spheres)
     walls = range(count + 1, len(table.particles) + 1)
     with_all = (w for w in walls if all((k, w) in table.laws for k in range(1, count + 1)))
     return next(with_all, None)
+
+
+@dataclass(frozen=True)
+class VelocityDamping:
+    """Hertz force with a constant `damping` coefficient (kg/s) that gives the e of `pair`."""
+
+    pair: ExportedPair
+    damping: float
+
+    @property
+    def normal_stiffness(self) -> float:
+        """The coefficient Kn (Pa) of LAMMPS' normal model `hertz`."""
+        return 4 / 3 * self.pair.law.contact_modulus
+
+    def restitution(self, share: float) -> float:
+        """COR at `share` times the velocity of the export."""
+        return hertz_restitution_at(self.pair.law, self.damping, share * self.pair.velocity)
+
+
+def _velocity_damping(pair: ExportedPair) -> VelocityDamping:
+    return VelocityDamping(pair, hertz_damping(pair.law, pair.velocity, pair.restitution))
+
+
+def _linear_spring(pair: ExportedPair) -> tuple[float, float]:
+    """Kn (N/m) and gamma_n (1/s) of `gran/hooke/history` that give the e of `pair`."""
+    frequency = math.pi / pair.contact_time
+    loss = -math.log(pair.restitution)
+    ratio = loss / math.hypot(math.pi, loss)
+    return pair.law.mass * frequency**2, 2 * ratio * frequency

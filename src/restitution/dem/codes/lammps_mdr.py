@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 from restitution.dem.export_common import commented, wrapped
 from restitution.dem.notes import numbers
-from restitution.dem.pair import Pair
+from restitution.dem.pair import ExportedPair
 from restitution.laws.law import FittedLaw
 
 NAME = "lammps-mdr"
@@ -28,14 +28,14 @@ _FAR = 0.1
 class MdrOffers:
     """Pairs with their fitted mdr laws, and comments with the reasons why other pairs have none."""
 
-    offers: list[tuple[Pair, FittedLaw]]
+    offers: list[tuple[ExportedPair, FittedLaw]]
     reasons: list[str]
 
 
-def mdr_offers(pairs: list[Pair]) -> MdrOffers:
-    """Find the pairs for which the fitted mdr law can be offered."""
-    offers: list[tuple[Pair, FittedLaw]] = []
-    refused: dict[str, list[Pair]] = {}
+def mdr_offers(pairs: list[ExportedPair]) -> MdrOffers:
+    """The pairs for which the fitted mdr law can be offered."""
+    offers: list[tuple[ExportedPair, FittedLaw]] = []
+    refused: dict[str, list[ExportedPair]] = {}
     for pair in pairs:
         obstacle, fit = _obstacle(pairs, pair), pair.fitted(NAME)
         if obstacle or fit is None:
@@ -46,8 +46,8 @@ def mdr_offers(pairs: list[Pair]) -> MdrOffers:
     return MdrOffers(offers, [commented(wrapped([text]), "#") for text in reasons])
 
 
-def _obstacle(pairs: list[Pair], pair: Pair) -> str:
-    """Return the reason why `pair` gets no mdr line; empty if it gets one."""
+def _obstacle(pairs: list[ExportedPair], pair: ExportedPair) -> str:
+    """The reason why `pair` gets no mdr line; empty if it gets one."""
     spheres = [other for other in pairs if not other.wall]
     if not pair.wall and len(spheres) > 1:
         return (
@@ -62,11 +62,7 @@ def _obstacle(pairs: list[Pair], pair: Pair) -> str:
     return _unfit(pair)
 
 
-def _unfit(pair: Pair) -> str:
-    """Return the reason why `pair` has no valid mdr fit; empty if it has one.
-
-    `_obstacle` adds the reasons that depend on other pairs.
-    """
+def _unfit(pair: ExportedPair) -> str:
     fit = pair.fitted(NAME)
     if fit is None and not pair.law.laws:
         return "no law was fitted to it"

@@ -11,11 +11,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from restitution.dem.export_common import STEPS, Export, number
-from restitution.dem.friction import friction_note
-from restitution.dem.pair import FRICTION, Pair
+from restitution.dem.export_common import SCRIPT, STEPS, Export, number
+from restitution.dem.pair import FRICTION, ExportedPair
 from restitution.dem.pair_table import PairTable
-from restitution.dem.velocity_matching import SCRIPT, matching_script
 
 CODE = "LIGGGHTS"
 LOWEST = 0.0501  # LIGGGHTS stops with "0.05 < coefficientRestitution <= 1 required"
@@ -38,11 +36,7 @@ _HARD, _SOFT = 1e9, 5e6
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """Write the input files for LIGGGHTS; return file names and texts.
-
-    The files are notes, a fragment to include, the script `match_velocity.py`, and a test collision
-    that prints e. Raises `CaseError`, `DomainError`.
-    """
+    """The input files for LIGGGHTS; names and texts. Raises `CaseError`, `DomainError`."""
     table.require_all(CODE)
     export = Export(table, velocity, CODE, LOWEST, _ENDS, setting=SETTING)
     pairs = export.pairs
@@ -57,9 +51,9 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
             friction=_by_types(
                 table, pairs, lambda p: number(p.friction), number(FRICTION), number(FRICTION)
             ),
-            friction_note=friction_note(pairs, "#", _TANGENTIAL),
+            friction_note=export.friction_note("#", _TANGENTIAL),
         ),
-        SCRIPT: matching_script(export, "liggghts -in my.in", FRAGMENT, "matched.liggghts"),
+        SCRIPT: export.matching_script("liggghts -in my.in", FRAGMENT, "matched.liggghts"),
         COLLISION: export.render(
             COLLISION,
             unset=unset,
@@ -71,10 +65,6 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
 
 
 def _hardness(table: PairTable) -> str:
-    """Return the command that makes LIGGGHTS accept the Young's moduli E of all particles.
-
-    Empty if LIGGGHTS accepts them without a command.
-    """
     E = [body.youngs_modulus for body in table.particles]
     if max(E) > _HARD:
         return "hard_particles yes"
@@ -82,11 +72,14 @@ def _hardness(table: PairTable) -> str:
 
 
 def _by_types(
-    table: PairTable, pairs: list[Pair], entry: Callable[[Pair], str], walls: str, spheres: str
+    table: PairTable,
+    pairs: list[ExportedPair],
+    entry: Callable[[ExportedPair], str],
+    walls: str,
+    spheres: str,
 ) -> list[list[str]]:
-    """Return a symmetric matrix with a row and a column for each type.
+    """A symmetric matrix over all types, with `entry` of each pair and `walls` for pairs of walls.
 
-    `entry` gives the text for a pair. Two walls never touch, so every pair of walls gets `walls`.
     `spheres` is the text for a pair of spheres that has no law, with braces for its types.
     """
     known = {(p.i, p.j): entry(p) for p in pairs}

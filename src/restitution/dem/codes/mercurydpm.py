@@ -11,7 +11,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from restitution.dem.export_common import Export, number
-from restitution.dem.friction import friction_note
 from restitution.dem.pair import FRICTION, shear_modulus
 from restitution.dem.pair_table import PairTable
 
@@ -26,7 +25,7 @@ _ENDS = "the overlap is back to zero. The force is tensile shortly before, due t
 
 @dataclass(frozen=True)
 class _Values:
-    """Values of the pair of types `i` ≤ `j`: E* and G* (Pa), e (a number or a name), friction."""
+    """E* and G* (Pa), e (a number or a name) and friction of the pair of types `i` ≤ `j`."""
 
     i: int
     j: int
@@ -37,10 +36,7 @@ class _Values:
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """Write notes and a header to include; return names and texts.
-
-    Raises `CaseError`, `DomainError`.
-    """
+    """Notes and a header to include; names and texts. Raises `CaseError`, `DomainError`."""
     table.require_all(CODE)
     export = Export(table, velocity, CODE, 0.0, _ENDS, setting=SETTING)
     unset = table.missing_spheres()
@@ -49,7 +45,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
         FILE: export.render(
             FILE,
             "//",
-            friction_note=friction_note(export.pairs, "//"),
+            friction_note=export.friction_note("//"),
             placeholder=FRICTION,
             unset=unset,
             alike=[pair for pair in values if pair.i == pair.j],
@@ -73,7 +69,6 @@ def _known(export: Export) -> list[_Values]:
 
 
 def _unset(table: PairTable, i: int, j: int) -> _Values:
-    """The values of a pair of spheres without a law; the user gives its e."""
     bodies = table.particles[i - 1], table.particles[j - 1]
     E = 1 / sum((1 - body.poissons_ratio**2) / body.youngs_modulus for body in bodies)
     return _Values(i, j, E, shear_modulus(*bodies), f"e_{i}_{j}", FRICTION)

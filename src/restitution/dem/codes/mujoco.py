@@ -27,8 +27,7 @@ from dataclasses import dataclass
 
 from restitution.dem.damping import dashpot_ratio
 from restitution.dem.export_common import Export
-from restitution.dem.friction import friction_note
-from restitution.dem.pair import Pair
+from restitution.dem.pair import ExportedPair
 from restitution.dem.pair_table import PairTable
 
 CODE = "MuJoCo"
@@ -51,16 +50,15 @@ _COARSE = 50  # number of time steps in a softened contact
 
 
 @dataclass(frozen=True)
-class Contact:
-    """Durations (s) and damping ratio (dimensionless) of a contact between two bodies.
+class DashpotContact:
+    """Durations (s) and damping ratio ζ of a contact between two bodies.
 
-    `duration` is that of an elastic Hertz contact, or longer if the acceleration would otherwise
-    exceed `_LARGEST`. `soft_duration` is that of a softened contact, which allows longer time
-    steps. Without damping, the largest overlap of the softened contact is the fraction `_DEEPEST`
-    of the smaller radius. `ratio` is the damping ratio ζ.
+    `duration` is that of an elastic Hertz contact, or longer if the acceleration would exceed
+    `_LARGEST`. `soft_duration` is that of a softened contact, for longer time steps: without
+    damping, its largest overlap is the fraction `_DEEPEST` of the smaller radius.
     """
 
-    pair: Pair
+    pair: ExportedPair
     duration: float
     soft_duration: float
     ratio: float
@@ -72,12 +70,7 @@ class Contact:
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """Write two files: contact parameters to include in an MJCF model, and a test collision.
-
-    The test collision prints e.
-
-    Returns file names and texts. Raises `CaseError`, `DomainError`.
-    """
+    """Contact parameters to include in an MJCF model, and a test collision; names and texts."""
     export = Export(table, velocity, CODE, LOWEST, _ENDS)
     contacts = [_contact(pair) for pair in export.pairs]
     return {
@@ -87,7 +80,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
             contacts=contacts,
             share=_DEEPEST,
             coarse=_COARSE,
-            friction_note=friction_note(export.pairs),
+            friction_note=export.friction_note(),
         ),
         COLLISION: export.render(
             COLLISION,
@@ -97,8 +90,8 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
     } | export.notes()
 
 
-def _contact(pair: Pair) -> Contact:
+def _contact(pair: ExportedPair) -> DashpotContact:
     duration = max(pair.contact_time, math.pi * pair.velocity / _LARGEST)
     radius = min(body.radius for body in (pair.first, pair.second) if body.radius is not None)
     soft = max(duration, math.pi * _DEEPEST * radius / pair.velocity)
-    return Contact(pair, duration, soft, dashpot_ratio(pair.restitution))
+    return DashpotContact(pair, duration, soft, dashpot_ratio(pair.restitution))

@@ -22,11 +22,9 @@ from __future__ import annotations
 
 from functools import partial
 
-from restitution.dem.export_common import Export, density_of
-from restitution.dem.friction import STIFFNESS_SHARE, friction_note
-from restitution.dem.pair import FRICTION, Pair, contact_time
+from restitution.dem.export_common import Export, density_of, law_points
+from restitution.dem.pair import FRICTION, STIFFNESS_SHARE, ExportedPair, contact_time
 from restitution.dem.pair_table import PairTable
-from restitution.dem.velocity_matching import law_points
 from restitution.laws.particle import Particle
 
 CODE = "YADE"
@@ -53,11 +51,7 @@ _FIT = (-1.23589, 0.202669, 0.0108748, 0.000410051, -3.09169e-5, -1.19887e-6)
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """Write notes, a module to import and a test collision that prints e.
-
-    Returns file names and texts.
-    Raises `CaseError`, `DomainError`.
-    """
+    """Notes, a module to import and a test collision; names and texts."""
     table.require_all(CODE)
     export = Export(table, velocity, CODE, LOWEST, _ENDS, setting=SETTING)
     return {
@@ -69,7 +63,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
             wall_density=_WALL_DENSITY,
             density=_density,
             points=partial(law_points, lowest=LOWEST),
-            friction_note=friction_note(export.pairs, "#", _TANGENTIAL),
+            friction_note=export.friction_note("#", _TANGENTIAL),
             tangential=_tangential,
         ),
         COLLISION: export.render(
@@ -80,19 +74,14 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
     } | export.notes()
 
 
-def _tangential(pair: Pair) -> float:
-    """The factor (dimensionless) by which the tangential stiffness of YADE is multiplied."""
+def _tangential(pair: ExportedPair) -> float:
     return 1.0 if pair.law.friction is None else STIFFNESS_SHARE
 
 
 def _density(body: Particle) -> float:
-    """The density (kg/m³) of a body; `_WALL_DENSITY` for a wall without a density."""
     return _WALL_DENSITY if body.wall and body.density is None else density_of(body)
 
 
-def _contact_time(pair: Pair) -> float:
-    """Contact time (s) of an elastic impact at 1 m/s.
-
-    On a wall, half the radius of the sphere replaces the reduced radius R*, as in YADE.
-    """
+def _contact_time(pair: ExportedPair) -> float:
+    """On a wall YADE uses half the radius of the sphere for R*."""
     return contact_time(pair.law, pair.law.radius / (2 if pair.wall else 1))

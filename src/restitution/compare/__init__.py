@@ -1,0 +1,1 @@
+"""Closed forms beside a case, a stored run or a law."""

@@ -1,0 +1,1 @@
+"""Collisions in time, from stored contact forces: head-on and oblique."""
