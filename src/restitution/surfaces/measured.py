@@ -63,34 +63,26 @@ def read_surface(
 ) -> Surface:
     """Read a measured height map, without levelling it.
 
-    - `.npy`, `.npz`: a 2-D array in metres, `array[i, j]` at x_i, y_j.
-    - `.txt`, `.csv`, `.dat`, `.asc`: a matrix in metres; each line of the file is a scan line
-      (constant y).
-    - All other files, and text that is not a plain matrix: NanoFocus, SDF and Wyko text, and any
-      format that SurfaceTopography can read. Install the extra `measured` for these formats.
-
-    The provenance contains the file with its SHA-256, format and channel, the size of the scan, and
-    the number of undefined pixels. Its `notice` names what is doubtful, and values of the file that
-    an argument replaced.
+    `.npy` and `.npz` hold a 2-D array in metres, `array[i, j]` at x_i, y_j; `.txt`, `.csv`, `.dat`
+    and `.asc` a matrix in metres, with a scan line (constant y) on each line. All other files are
+    NanoFocus, SDF, Wyko text, or a format of SurfaceTopography (extra `measured`).
 
     Args:
         path: File to read.
-        channel: Number of the channel, counted from 0; None selects the reader's default height
-            channel.
-        size: Edge lengths of the scan along x and y (m): number of pixels times pixel size.
-            Required if the file does not contain the lengths; otherwise it replaces them.
-        height_unit: Unit of the heights, such as "um"; it replaces the unit in the file. The
-            default is the unit in the file, or metres.
+        channel: Number of the channel, from 0; None selects the reader's default height channel.
+        size: Edge lengths along x and y (m), number of pixels times pixel size; they replace those
+            in the file.
+        height_unit: Unit of the heights, such as "um"; it replaces that in the file, or metres.
         undefined: `interpolate` fills undefined pixels harmonically from their neighbours, if at
             most 20 % of all pixels are undefined. `error` rejects a scan with undefined pixels.
         within: Ranges of x and y (m) to read, as in `crop`; None reads the whole range.
 
     Returns:
-        Surface with heights (m), shape (nx, ny).
+        Surface with heights (m), shape (nx, ny). The `notice` in its provenance names what is
+        doubtful.
 
     Raises:
-        SurfaceError: The file cannot be read or its content cannot be used, or an argument is
-            invalid.
+        SurfaceError: The file or an argument cannot be used.
     """
     _check_arguments(undefined, size, height_unit)
     file = Path(path)
@@ -221,7 +213,6 @@ def _read_scan(file: Path, channel: int | None) -> Scan:
 
 
 def _single_channel(suffix: str, head: bytes) -> Callable[[Path], Scan] | None:
-    """The reader of a format that contains one height map; None for other formats."""
     if SDF_MAGIC.match(head):
         return read_sdf
     if head.startswith(WYKO_MAGIC):

@@ -12,11 +12,10 @@ from restitution.surfaces.surface import Array, Surface, is_periodic
 
 @typed
 def refine(surface: Surface, factor: int) -> Surface:
-    """Resample a surface to smaller cells over the same domain.
+    """Resample a surface to smaller cells over the same domain, without adding waves.
 
-    The new heights are values of the trigonometric polynomial through the old heights (zero padding
-    of the spectrum), so no wave is added. A surface that is not periodic is first extended by its
-    mirror image, to avoid ringing at its edges. The origins of the two grids coincide (see `Grid`).
+    A surface that is not periodic is first extended by its mirror image, to avoid ringing at its
+    edges.
 
     Args:
         surface: Surface to refine.
@@ -42,13 +41,9 @@ def refine(surface: Surface, factor: int) -> Surface:
 
 
 def coarsen(surface: Surface, factor: int = 2) -> Surface:
-    """Resample `surface` to cells `factor` times as large.
+    """Resample `surface` to cells nearly `factor` times as large, a whole number of which fits.
 
-    Waves that are not longer than two new cells are removed. Longer waves do not change.
-
-    A whole number of new cells covers the domain. If the number of nodes is not a multiple of
-    `factor`, the new cells are therefore slightly smaller than `factor` old cells. Raises
-    `SurfaceError` for a factor below 1.
+    Waves that are not longer than two new cells are removed. `SurfaceError` for a factor below 1.
     """
     if factor < 1:
         raise SurfaceError(f"factor: {factor} is not a positive integer")
@@ -59,7 +54,6 @@ def coarsen(surface: Surface, factor: int = 2) -> Surface:
 
 
 def _resampled(surface: Surface, nodes: tuple[int, int]) -> Array:
-    """Heights of `surface` on a grid of `nodes` (nx, ny) over the same domain."""
     height = surface.height
     for n in nodes:
         height = _at_nodes(height, n, periodic=is_periodic(surface)).T

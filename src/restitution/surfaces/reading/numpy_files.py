@@ -18,11 +18,10 @@ SAVE_AS_NUMPY = "save the heights in metres as a 2-D array with numpy.save"
 
 
 def read_numpy(path: Path) -> Scan:
-    """Read a height map (m) from a NumPy file.
+    """Read a height map (m): the only array of the file, or `height` in a `.npz` file.
 
-    A `.npy` file contains one 2-D array. In a `.npz` file, the height map is the array `height`, or
-    the only array. A `.npz` file may also contain `size`, the two edge lengths (m). Raises
-    `SurfaceError` for other content, including pickled objects, which are not loaded.
+    A `.npz` file may also contain `size`, the two edge lengths (m). Raises `SurfaceError` for other
+    content, including pickled objects, which are not loaded.
     """
     array, size, details = _load_arrays(path)
     if array.ndim != 2 or min(array.shape) < 2:
