@@ -48,7 +48,6 @@ def _folder() -> Path:
 
 
 def _read(file: Path, key: str) -> Surface | None:
-    """Read the surface in `file`; None if it is missing, damaged or has another key."""
     # NumPy can raise any exception for a damaged file. The surface is then made again.
     with suppress(Exception):
         with file.open("rb") as stream, np.load(stream, allow_pickle=False) as content:
@@ -83,7 +82,6 @@ def _write(file: Path, key: str, surface: Surface) -> None:
 
 
 def _free_space(folder: Path, size: int) -> None:
-    """Make space for `size` bytes: delete abandoned, then the least recently used files."""
     files = [(entry.stat(), entry) for entry in folder.iterdir() if entry.is_file()]
     total = size + sum(stat.st_size for stat, _ in files)
     for stat, entry in sorted(files, key=lambda item: item[0].st_mtime):

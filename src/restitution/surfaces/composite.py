@@ -28,15 +28,11 @@ _COMBINED: dict[str, Callable[[list[Any]], str | float]] = {
 def composite(surfaces: Sequence[Surface]) -> Surface:
     """Sum the heights of surfaces on one grid, each positive towards the other body.
 
-    The gap depends only on this sum. All surfaces use the x and y axes of the contact: rotate or
-    mirror a scan first if the orientation matters. The provenance contains that of each part
-    (`part_1_…`).
-
     Args:
-        surfaces: Surfaces on the same grid.
+        surfaces: Surfaces on the same grid, with the x and y axes of the contact.
 
     Returns:
-        Sum of the surfaces; the surface itself if there is only one.
+        Sum of the surfaces, with the provenance of each part; a single surface itself.
 
     Raises:
         SurfaceError: `surfaces` is empty, or the grids differ.

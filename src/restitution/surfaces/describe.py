@@ -95,7 +95,6 @@ def _rms_curvature(z: Array, hx: float, hy: float) -> float:
 
 
 def _correlation_length(z: Array, h: float) -> float | None:
-    """Lag (m) along the first axis where the autocorrelation first falls to 10 %, or None."""
     from scipy.fft import irfft, next_fast_len, rfft
 
     # The FFT treats each line as periodic. Padding with zeros to twice the length prevents a

@@ -1,13 +1,12 @@
 """Rough surfaces with given wave amplitudes and given skewness and kurtosis of the heights.
 
-`filtered` gives white noise η the skewness and kurtosis (module `johnson`) that a filter with the
-impulse response θ turns into those of the heights z (Watson and Spedding 1982, Wear 83, 215–231;
-Manesh et al. 2010, Tribol. Int. 43, 2218–2225). Large values cannot be reached:
+`filtered` filters transformed white noise η (module `johnson`) with the impulse response θ (Watson
+and Spedding 1982, Wear 83, 215–231; Manesh et al. 2010, Tribol. Int. 43, 2218–2225),
 
-    Sk_z = Sk_η Σθ³/(Σθ²)^{3/2},   K_z − 3 = (K_η − 3) Σθ⁴/(Σθ²)².
+    Sk_z = Sk_η Σθ³/(Σθ²)^{3/2},   K_z − 3 = (K_η − 3) Σθ⁴/(Σθ²)²;
 
-`adjusted` alternately imposes the distribution of heights, in the same rank order, and the
-amplitudes, with the same phases (Schreiber and Schmitz 1996, Phys. Rev. Lett. 77, 635–638).
+`adjusted` reaches larger values, by imposing heights and amplitudes alternately (Schreiber and
+Schmitz 1996, Phys. Rev. Lett. 77, 635–638).
 """
 
 from __future__ import annotations

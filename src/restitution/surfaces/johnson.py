@@ -63,7 +63,6 @@ def _bounded(z: Array, gamma: float, log_delta: float) -> Array:
 
 
 def _moments(form: _Form, shape: Array) -> tuple[float, float, float, float]:
-    """Mean, standard deviation, skewness and kurtosis of x, by Gauss–Hermite quadrature."""
     weight = _WEIGHTS / _WEIGHTS.sum()
     x = form(_ABSCISSAE, *shape)
     mean = float(weight @ x)
@@ -78,7 +77,6 @@ def _moments(form: _Form, shape: Array) -> tuple[float, float, float, float]:
 
 
 def _best_fit(skewness: float, kurtosis: float) -> tuple[float, _Form, Array]:
-    """Misfit, form and parameters (γ, ln δ) of the best fit."""
     best = math.inf, _unbounded, np.zeros(2)
     for form, start in product((_unbounded, _bounded), _STARTS):
         shape, miss = _fitted(form, start, skewness, kurtosis)

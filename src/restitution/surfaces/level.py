@@ -57,11 +57,6 @@ def _mean_curvature(paraboloid: Array, grid: Grid) -> float:
 
 
 def _least_squares_form(height: Array, degree: int) -> Array:
-    """Least-squares polynomial of total degree `degree`, shape (nx, ny).
-
-    Products of orthonormal polynomials along x and y are orthonormal on a regular grid, so each
-    coefficient is a scalar product.
-    """
     P, Q = (orthonormal_polynomials(n, degree) for n in height.shape)
     coefficients = P.T @ height @ Q
     power_x, power_y = np.indices(coefficients.shape)

@@ -145,7 +145,6 @@ def _check_shape(file: Path, heights: Array) -> None:
 
 
 def _check_readable(file: Path) -> None:
-    """Raise `SurfaceError` if a file is missing, unreadable, not regular, empty or too large."""
     try:
         kind = file.stat()
         if stat.S_ISDIR(kind.st_mode):
@@ -227,7 +226,6 @@ def _single_channel(suffix: str, head: bytes) -> Callable[[Path], Scan] | None:
 def _agreed_size(
     file: Path, scan: Scan, given: tuple[float, float] | None
 ) -> tuple[tuple[float, float], list[str]]:
-    """Edge lengths (m) from `given` or from the file, and a notice if they differ."""
     if given is None and not all(
         side is None or (math.isfinite(side) and side > 0) for side in scan.size
     ):
@@ -260,7 +258,6 @@ def _agreed_size(
 
 
 def _in_unit(file: Path, scan: Scan, given: str | None) -> tuple[Array, list[str]]:
-    """Heights (m) in the unit `given`, and a notice if the file states another unit."""
     if given is None:
         if scan.unit is None:
             raise RefusedSurfaceError(
@@ -298,7 +295,6 @@ def _doubtful_size(file: Path, grid: Grid, *, given: bool) -> Iterator[str]:
 def _part(
     heights: Array, grid: Grid, within: tuple[Range | None, Range | None]
 ) -> tuple[Array, Grid, dict[str, str | float]]:
-    """The part of the scan `within` ranges, its grid, and what the provenance says of it."""
     if within == (None, None):
         return heights, grid, {}
     # `crop` accepts only defined heights, so the marks of undefined pixels are cropped apart.

@@ -42,5 +42,4 @@ def _stream(seed: int, m: int) -> np.random.Philox:
 
 
 def _random_bits(stream: np.random.BitGenerator, count: int) -> Array:
-    """`count` random whole numbers of 52 bits from the raw `stream`."""
     return (stream.random_raw(count) >> np.uint64(12)).astype(np.float64)

@@ -100,6 +100,5 @@ def wave_numbers(nodes: tuple[int, ...], spacing: tuple[float, float]) -> Array:
 
 
 def _tapers(n: int) -> list[Array]:
-    """Sine tapers with a mean square of 1."""
     at = (np.arange(n) + 1) * math.pi / (n + 1)
     return [math.sqrt(2 * n / (n + 1)) * np.sin(k * at) for k in range(1, _TAPERS + 1)]

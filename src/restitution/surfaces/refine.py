@@ -14,11 +14,8 @@ from restitution.surfaces.surface import Array, Surface, is_periodic
 def refine(surface: Surface, factor: int) -> Surface:
     """Resample a surface to smaller cells over the same domain, without adding waves.
 
-    A surface that is not periodic is first extended by its mirror image, to avoid ringing at its
-    edges.
-
     Args:
-        surface: Surface to refine.
+        surface: Surface to refine; its mirror image extends it first if it is not periodic.
         factor: Number of new cells per old cell along each axis, at least 1.
 
     Returns:
@@ -69,7 +66,6 @@ def divided(grid: Grid, factor: int) -> Grid:
 
 
 def _at_nodes(height: Array, nodes: int, *, periodic: bool) -> Array:
-    """Resample `height` along the first axis to another number of nodes over the same length."""
     from scipy.fft import irfft, rfft
 
     n = height.shape[0]

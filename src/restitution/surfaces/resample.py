@@ -141,7 +141,6 @@ def _carried(height: Array, ratio: float) -> Array:
 
 
 def _carried_mirrored(height: Array, ratio: float) -> Array:
-    """As `_carried`, with heights continued by their mirror image."""
     from scipy.fft import dct, idct
 
     modes = dct(height, type=2, axis=0)  # cosine k has a wavelength of 2n/k pixels

@@ -146,7 +146,6 @@ def _without_short_waves(H: Array, grid: Grid, shortest: float | None) -> Array:
 
 
 def _wave_numbers(grid: Grid) -> Array:
-    """Wave numbers (rad/m) of the modes of `rfft2`."""
     (nx, ny), (hx, hy) = grid.nodes, grid.spacing
     qx, qy = np.fft.fftfreq(nx, hx)[:, None], np.fft.rfftfreq(ny, hy)[None, :]
     return np.asarray(2 * math.pi * np.hypot(qx, qy))

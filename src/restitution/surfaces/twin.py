@@ -96,7 +96,6 @@ def _check(scan: Surface, grid: Grid) -> None:
 
 
 def _adjusted(spectrum: WaveSpectrum, scan: Surface, grid: Grid, seed: int) -> Modes:
-    """Waves of the twin that `grid` resolves, in the order of `rfft2` on `grid`."""
     modes: Modes = np.zeros((1, 1), dtype=np.complex128)
     most = 0, 0
     for cell in _bands(spectrum, scan):
@@ -137,8 +136,7 @@ def _band(
 ) -> tuple[Modes, tuple[int, int]]:
     """Adjust the phases of the waves that cells of size `cell` (m) resolve, except those `known`.
 
-    `kept` is the largest number of periods of the known waves along x and y. Return all waves and
-    the same two numbers for them.
+    Return all waves, and the largest numbers of their periods; `kept` are these of the known waves.
     """
     from scipy.fft import irfft2, rfft2
 

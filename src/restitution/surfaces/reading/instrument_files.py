@@ -70,11 +70,7 @@ def read_instrument(
 
 
 def _open(package: Any, path: Path, content: bytes | None, form: str | None) -> Any:
-    """Open a file with the reader of its suffix, or else with the first that finds a channel.
-
-    Some readers accept files of other formats and find nothing in them: that of MATLAB accepts
-    about half of all NanoFocus files.
-    """
+    """Some readers accept other formats and find nothing: MATLAB's half of all NanoFocus files."""
     if content is not None:
         return package.open_topography(io.BytesIO(content), format=form)
     empty = None
@@ -200,7 +196,6 @@ def _described(channel: Any) -> str:
 
 
 def _default_index(reader: Any, channels: list[Any]) -> int:
-    """Index of the default channel, or of the first that is more likely to be the height map."""
     if not channels:
         return 0
     default = int(reader.default_channel.index)
@@ -237,10 +232,7 @@ def _lacks_unit(channel: Any) -> bool:
 
 
 def _value_unit(channel: Any) -> str | None:
-    """Unit of the values of a channel; None if unknown.
-
-    `channel.unit` is a pair (lateral, value) if the reader could not convert the values.
-    """
+    """`channel.unit` is a pair (lateral, value) if the reader could not convert the values."""
     unit: str | None = channel.unit[1] if isinstance(channel.unit, tuple) else channel.data_unit
     return unit
 
@@ -254,10 +246,6 @@ def _list(some: list[Any], channels: list[Any]) -> str:
 
 
 def _why_unreadable(error: Exception, path: Path, form: str | None) -> str:
-    """Why SurfaceTopography cannot open a file, and what to do, from the file's first bytes.
-
-    Otherwise from the message of the only reader tried (that of `form`), or of that of the suffix.
-    """
     if form is None and (known := identified(path)) is not None:
         return known
     named_after_suffix = rf"tried {re.escape(path.suffix.removeprefix('.'))}reader:\s*(.+)"
@@ -278,7 +266,6 @@ def _first_line(error: Exception) -> str:
 
 @contextlib.contextmanager
 def _quiet() -> Iterator[None]:
-    """Suppress output and warnings of third-party readers."""
     with (
         warnings.catch_warnings(),
         contextlib.redirect_stdout(io.StringIO()),

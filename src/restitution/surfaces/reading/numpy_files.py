@@ -84,7 +84,6 @@ def _size_entry(path: Path, entry: NDArray[np.generic]) -> tuple[float, float]:
 
 
 def _check_headers(path: Path) -> None:
-    """Raise `SurfaceError` if a header states more pixels than a scan may have."""
     if path.suffix.lower() == ".npy":
         with path.open("rb") as stream:
             _check_header(path, stream)

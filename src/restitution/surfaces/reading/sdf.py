@@ -51,7 +51,6 @@ def read_sdf(path: Path) -> Scan:
 
 
 def _header(raw: bytes) -> tuple[dict[str, float], bytes]:
-    """The numbers of the header, and the part of the file after it."""
     if raw[:1] == b"a":
         head, star, body = raw[8:].partition(b"*")
         if not star:

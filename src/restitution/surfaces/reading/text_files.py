@@ -214,7 +214,6 @@ def _read_header(
 
 
 def _statement(comment: str) -> tuple[str, str]:
-    """Split `# key: value` or `# key = value` into key (lower case) and value, else empty texts."""
     entry = _STATEMENT.fullmatch(comment)
     return (entry["key"].strip().lower(), entry["value"].strip()) if entry else ("", "")
 
@@ -238,8 +237,6 @@ def _check_counts(path: Path, stated: _Counts, read: tuple[int, int]) -> None:
 
 @dataclass(frozen=True)
 class _Axes:
-    """The steps of the axes of x and y, in an unknown unit."""
-
     x: float
     y: float
 
@@ -257,8 +254,7 @@ class _Axes:
 def _axes_of(values: Array) -> _Axes | None:
     """The axes of a matrix of lines; None if its first line and column are heights.
 
-    Both must have even steps, and their neighbours, the first line and column of heights, must not
-    both have them: in a plane, all lines and columns have even steps.
+    In a plane, all lines and columns have even steps; so those beside the axes must not have them.
     """
     if min(values.shape) <= _LEAST_AXIS:
         return None

@@ -50,7 +50,6 @@ def read_wyko(path: Path) -> Scan:
 
 
 def _header(lines: Iterator[str]) -> tuple[dict[str, float], str]:
-    """The numbers of the header, and the name of the first block of heights."""
     header: dict[str, float] = {}
     for line in lines:
         key, *fields = (field.strip() for field in line.split("\t"))
