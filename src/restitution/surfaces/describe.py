@@ -32,8 +32,7 @@ def describe(surface: Surface) -> dict[str, float | None]:
     - `rms_curvature_per_m`: half the root mean square Laplacian, for isotropic asperities the rms
       curvature
     - `correlation_length_x_m`, `correlation_length_y_m`: lag at which the biased autocorrelation
-    first
-      falls to 10 % (Hu and Tonder 1992)
+      first falls to 10 % (Hu and Tonder 1992)
 
     Args:
         surface: Surface to describe; subtract its tilt and form first (`level`).
