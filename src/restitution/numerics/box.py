@@ -65,6 +65,5 @@ def reframe(values: NDArray[Scalar], box: Box, target: Box) -> NDArray[Scalar]:
 
 
 def _within(box: Box, ranges: list[tuple[int, int]]) -> tuple[slice, ...]:
-    """Convert `ranges` of grid indices along x and y to slices of an array on `box`."""
     pairs = zip(box, ranges, strict=True)
     return tuple(slice(start - part.start, stop - part.start) for part, (start, stop) in pairs)

@@ -1,9 +1,8 @@
 """Choose compiled kernels or NumPy expressions, and the instruction set of the kernels.
 
-Each time-critical operation is written twice, as a NumPy expression, which works on any device, and
-as a C++ loop of the same name in `restitution.numerics.loops`, several times as fast. Tests compare
-the two. RESTITUTION_KERNELS ("avx512", "avx2", "plain" or "numpy") is read once; by default, the
-widest vectors that the processor supports are used.
+Each time-critical operation is a NumPy expression, which works on any device, and a C++ loop of the
+same name in `restitution.numerics.loops`. RESTITUTION_KERNELS ("avx512", "avx2", "plain" or
+"numpy") is read once; the default is the widest vectors that the processor supports.
 """
 
 from __future__ import annotations
@@ -26,7 +25,6 @@ Result = TypeVar("Result")
 
 
 def _load() -> tuple[Any, str]:
-    """Return the compiled module and an empty text, or None and why, with a remedy."""
     wanted = os.environ.get(VARIABLE, "")
     if wanted == "numpy":
         return None, f"{VARIABLE} is numpy; unset it"

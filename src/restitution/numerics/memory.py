@@ -41,7 +41,6 @@ def _of_machine() -> float:
 
 
 def _of_control_groups(groups: str = "/proc/self/cgroup") -> float:
-    """Smallest memory limit (bytes) of this process's control groups and their parent groups."""
     least = math.inf
     try:
         lines = Path(groups).read_text(encoding="utf-8").splitlines()

@@ -1,13 +1,9 @@
-"""Minimisation of an energy that is not convex: a quadratic plus one potential per node.
+"""Minimisation of an energy that is not convex: ½ uᵀK⁻¹u + Σ_i φ_i(u_i).
 
-    minimise  ½ uᵀK⁻¹u + Σ_i φ_i(u_i)
-
-K is symmetric positive definite and known only through its product with an array. The point is
-stored twice, as u and as p = K⁻¹u. The gradient is r = p + φ′, and the Hessian is K⁻¹ + diag(φ″).
+K is symmetric positive definite. The point is stored as u and p = K⁻¹u; the gradient is r = p + φ′.
 Newton steps are solved by conjugate gradients up to the boundary of a trust region or negative
 curvature (Steihaug 1983, SIAM J. Numer. Anal. 20, 626–637). With K as preconditioner, each
-direction is K s with a sum s of residuals, so K⁻¹ is never needed. The energy falls in every
-accepted step: the method descends from its start to a neighbouring minimum.
+direction is K s with a sum s of residuals, so K⁻¹ is never needed.
 """
 
 from __future__ import annotations

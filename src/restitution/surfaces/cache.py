@@ -1,8 +1,7 @@
 """Cache of surfaces that took long to make, in the user's cache folder.
 
-Each file contains the heights, the provenance and the key of a surface. The key lists everything on
-which the surface depends, including the version of this package. A file that cannot be written or
-read causes no error; the surface is made again when it is needed.
+A key lists everything on which the surface depends, the version of this package included. A file
+that cannot be written or read causes no error; the surface is made again when it is needed.
 """
 
 from __future__ import annotations
@@ -30,15 +29,11 @@ _REST = 2**12  # estimated largest size of a file without its heights (bytes)
 
 
 def kept(parameters: Mapping[str, Any], make: Callable[[], Surface]) -> Surface:
-    """Return a surface from the cache, or make it.
-
-    `parameters` (JSON types) describe the surface completely. If the cache does not contain the
-    surface, `make` is called. The new surface is cached if making it took long.
-    """
+    """Surface of `parameters` (JSON types) from the cache; else `make` it, and cache it if slow."""
     key = json.dumps({"version": version("restitution"), **parameters}, sort_keys=True)
     file = _folder() / f"{hashlib.sha256(key.encode()).hexdigest()}.npz"
-    if (found := _read(file, key)) is not None:
-        return found
+    if (cached := _read(file, key)) is not None:
+        return cached
     began = time.perf_counter()
     surface = make()
     if time.perf_counter() - began > _LONG and surface.height.nbytes <= _LARGEST:
@@ -53,7 +48,6 @@ def _folder() -> Path:
 
 
 def _read(file: Path, key: str) -> Surface | None:
-    """Read the surface in `file`; None if it is missing, damaged or has another key."""
     # NumPy can raise any exception for a damaged file. The surface is then made again.
     with suppress(Exception):
         with file.open("rb") as stream, np.load(stream, allow_pickle=False) as content:
@@ -88,11 +82,6 @@ def _write(file: Path, key: str, surface: Surface) -> None:
 
 
 def _free_space(folder: Path, size: int) -> None:
-    """Make space for a new file of `size` bytes in the cache folder.
-
-    Abandoned temporary files are deleted. The least recently used files are also deleted until the
-    new file fits.
-    """
     files = [(entry.stat(), entry) for entry in folder.iterdir() if entry.is_file()]
     total = size + sum(stat.st_size for stat, _ in files)
     for stat, entry in sorted(files, key=lambda item: item[0].st_mtime):

@@ -22,18 +22,15 @@ _MOST = 0.1  # largest fraction of pixels that may be outliers
 
 @typed
 def crop(surface: Surface, *, x: Range | None = None, y: Range | None = None) -> Surface:
-    """Keep only the pixels whose centres lie within ranges of x and y.
-
-    The ranges are in the coordinates of `surface.grid`, with zero in the middle. The coordinates of
-    the new surface are zero in the middle of the remaining area.
+    """Keep only the pixels whose centres lie within ranges of x and y, as in `surface.grid`.
 
     Args:
         surface: Surface to crop.
-        x: Lowest and highest x (m), within the scan; None keeps the whole range.
-        y: Lowest and highest y (m), within the scan; None keeps the whole range.
+        x: Lowest and highest x (m), zero in the middle of the scan; None keeps the whole range.
+        y: Lowest and highest y (m), likewise.
 
     Returns:
-        Surface of the remaining pixels.
+        Surface of the remaining pixels, with x and y zero in its middle.
 
     Raises:
         SurfaceError: A range extends beyond the scan, or no pixel lies within it.
@@ -77,14 +74,9 @@ def crop(surface: Surface, *, x: Range | None = None, y: Range | None = None) ->
 def remove_outliers(surface: Surface, threshold: float) -> Surface:
     """Replace outliers by harmonic interpolation of the pixels around them.
 
-    First the least-squares paraboloid is subtracted from a copy of the heights. (On a slope, a
-    pixel would often equal the median of its neighbours, so outliers could remain hidden.) Each
-    height is then compared with the median of the 5 x 5 pixels around it. A pixel is an outlier if
-    it differs from this median by more than `threshold` standard deviations. The standard deviation
-    of these differences is estimated from their median absolute value, because outliers hardly
-    change a median.
-
-    The number of outliers and their largest difference are added to the provenance.
+    Outliers differ from the median of 5 x 5 pixels, after subtraction of the least-squares
+    paraboloid, by more than `threshold` standard deviations, estimated from the median absolute
+    difference.
 
     Args:
         surface: Surface to clean.
@@ -92,7 +84,7 @@ def remove_outliers(surface: Surface, threshold: float) -> Surface:
             to 3 x 3 pixels and single slipped scan lines; smaller values also remove summits.
 
     Returns:
-        Surface without outliers.
+        Surface without outliers; the provenance states their number and largest step.
 
     Raises:
         SurfaceError: The threshold is not positive, or more than 10 % of the pixels are outliers.
@@ -125,10 +117,7 @@ def remove_outliers(surface: Surface, threshold: float) -> Surface:
 
 
 def local_steps(surface: Surface) -> tuple[Array, float, Array]:
-    """Heights minus their local median, the standard deviation of these steps, and the heights (m).
-
-    The least-squares paraboloid is subtracted first (see `remove_outliers`).
-    """
+    """Heights minus their local median, standard deviation of these steps, and heights (m)."""
     from scipy.ndimage import median_filter
 
     height = level(surface, "curvature").height
@@ -137,12 +126,10 @@ def local_steps(surface: Surface) -> tuple[Array, float, Array]:
 
 
 def fill_harmonically(height: Array, spacing: tuple[float, float]) -> Array:
-    """Fill NaN pixels with heights that satisfy Laplace's equation in each hole.
+    """Fill NaN pixels by Laplace's equation, with a normal slope of zero at the edge of the scan.
 
-    `height` has shape (nx, ny) and at least one defined pixel; `spacing` is (hx, hy) in m. The
-    defined pixels around a hole are the boundary values. All heights in a hole stay between the
-    lowest and the highest height on its rim, so filling adds no summit that could make contact. At
-    the edge of the scan, the slope normal to the edge is zero.
+    `height` has shape (nx, ny) and at least one defined pixel; `spacing` is (hx, hy) in m. Filling
+    adds no summit that could make contact.
     """
     from scipy.sparse import coo_array
     from scipy.sparse.linalg import spsolve

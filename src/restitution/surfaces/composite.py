@@ -26,26 +26,13 @@ _COMBINED: dict[str, Callable[[list[Any]], str | float]] = {
 
 @typed
 def composite(surfaces: Sequence[Surface]) -> Surface:
-    """Sum the heights of several surfaces on the same grid.
-
-    The gap between rough bodies depends only on the sum of their heights.
-
-    The heights of each surface are positive towards the other body, and all surfaces use the x and
-    y axes of the contact. If the relative orientation of two scans matters, rotate or mirror one of
-    them first.
-
-    The provenance of the sum contains the provenance of each part, with the prefixes `part_1_`,
-    `part_2_`, … For scans, it also states the files, the direction in which maps draw the y axis,
-    and the largest pixel size of the parts. If all parts are periodic, it says so. If parts were
-    resampled, it states the rms height of the waves removed from them. The entry `removed_slope` is
-    then an upper bound of the rms slope of the removed waves, divided by the rms slope of the sum
-    before resampling.
+    """Sum the heights of surfaces on one grid, each positive towards the other body.
 
     Args:
-        surfaces: Surfaces on the same grid.
+        surfaces: Surfaces on the same grid, with the x and y axes of the contact.
 
     Returns:
-        Sum of the surfaces; the surface itself if there is only one.
+        Sum of the surfaces, with the provenance of each part; a single surface itself.
 
     Raises:
         SurfaceError: `surfaces` is empty, or the grids differ.

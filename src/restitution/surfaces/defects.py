@@ -29,11 +29,9 @@ STEEP = 0.5  # rms slope beyond which small-slope theory is inaccurate
 
 @dataclass(frozen=True)
 class Form:
-    """Tilt and curvature of a surface.
+    """Fractions of the height variance: of a plane, and of a sphere in what a plane leaves.
 
-    `tilt` is the fraction of the height variance that a plane explains. `curvature` is the fraction
-    of the remaining variance that a sphere explains, and `radius` (m) the radius of this sphere,
-    negative for a hollow. If the curvature may be that of long waves, `curvature` is 0.
+    The `radius` (m) of the sphere is negative for a hollow. `curvature` is 0 for long waves.
     """
 
     tilt: float = 0.0
@@ -43,10 +41,7 @@ class Form:
 
 @dataclass(frozen=True)
 class Spikes:
-    """The number of spikes, their largest height (m), and the threshold that removes them.
-
-    `threshold` is an argument of `remove_outliers`.
-    """
+    """Number of spikes, largest height (m), and the `threshold` of `remove_outliers` for them."""
 
     count: int = 0
     height: float = 0.0
@@ -81,11 +76,9 @@ def form_of(surface: Surface) -> Form:
 def spikes_of(surface: Surface) -> Spikes:
     """Spikes: a few pixels that stand far above the others, separated from them by a gap.
 
-    A pixel stands out if its step above the median of its neighbourhood exceeds a height T, the
-    larger of 8 standard deviations of these steps and 4 Sq of the other pixels. Pixels above 2 T
-    are spikes if there are more of them than between T and 2 T. Otherwise the heights have a long
-    tail, as those of many real surfaces. Only steps up count, because the other body does not touch
-    pits; but on steep surfaces steps down count as well.
+    With T the larger of 8 standard deviations of the steps above the local median and 4 Sq of the
+    other pixels, pixels above 2 T are spikes if there are more than between T and 2 T. Steps down,
+    which the other body does not touch, count on steep surfaces only.
     """
     from scipy.ndimage import label
 
@@ -105,7 +98,7 @@ def spikes_of(surface: Surface) -> Spikes:
 
 
 def _may_have_spikes(surface: Surface) -> bool:
-    """Whether any pixel differs from its neighbours by far more than heights differ: a fast test.
+    """Fast test: whether any pixel differs from its neighbours by far more than heights differ.
 
     A corner of a spike of 2 T differs from the mean of its neighbours by T or more, so by at least
     4 Sq. For uniformly distributed heights, Sq is 1.15 times their median absolute value.
@@ -117,10 +110,7 @@ def _may_have_spikes(surface: Surface) -> bool:
 
 
 def noted(surface: Surface) -> Surface:
-    """Add to the provenance of a scan the defects that are left in it.
-
-    A part of the scan, its mirror images or a twin of it may not show them.
-    """
+    """Add to the provenance of a scan the defects left in it, which a part may not show."""
     form, spikes = form_of(surface), spikes_of(surface)
     more: dict[str, str | float] = {"tilt_share": form.tilt, "curvature_share": form.curvature}
     if form.curvature:

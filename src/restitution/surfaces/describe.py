@@ -1,9 +1,4 @@
-"""Height, slope and correlation parameters of a rough surface, after ISO 25178-2.
-
-z is the height minus its mean, and ⟨ ⟩ is the mean over all cells. The standard defines the
-parameters for a surface without tilt and form (the scale-limited surface), so subtract tilt and
-form first (`level`). Clause numbers refer to ISO 25178-2:2012.
-"""
+"""Height, slope and correlation parameters of a rough surface, after ISO 25178-2:2012."""
 
 from __future__ import annotations
 
@@ -21,10 +16,9 @@ _CORRELATION_LEVEL = 0.1
 
 @typed
 def describe(surface: Surface) -> dict[str, float | None]:
-    """Compute height, slope and correlation parameters, after ISO 25178-2:2012.
+    """Height, slope and correlation parameters, after ISO 25178-2:2012 (clauses in brackets).
 
-    z is the height minus its mean, and ⟨ ⟩ is the mean over all cells. Numbers in brackets are
-    clauses of the standard.
+    z is the height minus its mean, and ⟨ ⟩ is the mean over all cells.
 
     - `Sq_m`: root mean square height, ⟨z²⟩^½ (4.1.1)
     - `Ssk`: skewness, ⟨z³⟩/Sq³ (4.1.2)
@@ -33,20 +27,18 @@ def describe(surface: Surface) -> dict[str, float | None]:
     - `Sv_m`: maximum pit height, −min z (4.1.5)
     - `Sz_m`: maximum height, Sp + Sv (4.1.6)
     - `Sa_m`: arithmetical mean height, ⟨|z|⟩ (4.1.7)
-    - `Sdq`: root mean square gradient, ⟨(∂z/∂x)² + (∂z/∂y)²⟩^½ (4.3.1), from differences between
-      neighbouring cells. (Central differences do not detect the shortest waves.)
-    - `rms_curvature_per_m`: half the root mean square Laplacian, ½⟨(∇²z)²⟩^½, from second
-      differences. For isotropic asperities this value is the rms curvature.
-    - `correlation_length_x_m`, `correlation_length_y_m`: lag along x or y at which the
-      autocorrelation of z first falls to 10 % of its value at lag zero (Hu and Tonder 1992). The
-      biased estimate of the autocorrelation is interpolated linearly between lags.
+    - `Sdq`: root mean square gradient (4.3.1), from differences between neighbouring cells; central
+      differences do not detect the shortest waves
+    - `rms_curvature_per_m`: half the root mean square Laplacian, for isotropic asperities the rms
+      curvature
+    - `correlation_length_x_m`, `correlation_length_y_m`: lag at which the biased autocorrelation
+      first falls to 10 % (Hu and Tonder 1992)
 
     Args:
         surface: Surface to describe; subtract its tilt and form first (`level`).
 
     Returns:
-        Parameters by name (SI). `Ssk`, `Sku` and the correlation lengths of a flat surface are
-        None. A correlation length is also None if it exceeds the domain.
+        Parameters by name (SI); None where undefined, or a correlation length beyond the domain.
     """
     height = surface.height
     z = height - height.mean()
@@ -102,7 +94,6 @@ def _rms_curvature(z: Array, hx: float, hy: float) -> float:
 
 
 def _correlation_length(z: Array, h: float) -> float | None:
-    """Lag (m) along the first axis where the autocorrelation first falls to 10 %, or None."""
     from scipy.fft import irfft, next_fast_len, rfft
 
     # The FFT treats each line as periodic. Padding with zeros to twice the length prevents a

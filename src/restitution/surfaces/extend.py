@@ -1,8 +1,4 @@
-"""Extend a scan beyond the measured area, by mirror images or by a statistical twin.
-
-A twin is a random surface with the statistics of the scan. In both cases the result is not the
-measured surface, as the `notice` in its provenance states.
-"""
+"""Extend a scan beyond the measured area, by mirror images or by a statistical twin."""
 
 from __future__ import annotations
 
@@ -33,27 +29,21 @@ def extend(
 ) -> Surface:
     """Extend a scan to a larger area.
 
-    - `twin`: a random surface with the spectrum, the distribution of heights and the rms slope
-      of the scan. The twin has no waves longer than the scan.
-    - `mirror`: the scan in the middle, surrounded by tiles that are its mirror images. The surface
-      repeats every two tiles, and slopes jump where tiles meet.
-
-    Waves that are too short for the cells of the grid are left out.
-
     Args:
         surface: Scan to extend.
-        to: Grid of the new surface, or the edge lengths along x and y (m). With edge lengths, the
-            cells have the size of the pixels of the scan.
-        how: Method, `twin` or `mirror`.
+        to: Grid of the new surface, or the edge lengths along x and y (m), with the pixels of the
+            scan.
+        how: `twin`, a random surface with the spectrum, the distribution of heights and the rms
+            slope of the scan; or `mirror`, tiles of the scan and its mirror images, whose slopes
+            jump where tiles meet.
         seed: Seed of the random phases; for a twin only.
 
     Returns:
-        Extended surface. The `notice` in its provenance states that the surface is not the scan.
+        Extended surface, without waves too short for its cells; a `notice` says it is not the scan.
 
     Raises:
-        SurfaceError: An argument is invalid, or the scan has no twin. A scan has no twin if it is
-            flat, has fewer than 16 pixels along an axis, or has an edge that is not longer than two
-            cells of the grid.
+        SurfaceError: An argument is invalid, or the scan has no twin: it is flat, has fewer than 16
+            pixels along an axis, or has an edge that is not longer than two cells of the grid.
     """
     if how not in get_args(Extension):
         raise SurfaceError(f"how={how!r} is unknown; choose 'twin' or 'mirror'")
@@ -77,12 +67,7 @@ def _with_pixels_of(surface: Surface, size: tuple[float, float]) -> Grid:
 
 
 def _mirrored(scan: Surface, grid: Grid) -> Surface:
-    """Cover `grid` with tiles: the scan in the middle, surrounded by its mirror images.
-
-    If the scan is at least as large as the grid, no mirror images are needed, and the surface is a
-    part of the scan. Waves that are too short for the cells of `grid` are removed. A cubic spline
-    interpolates the heights between pixels.
-    """
+    """Tile `grid` with the scan in the middle and its mirror images; a part of a larger scan."""
     if all(g <= s * (1 + 1e-9) for g, s in zip(grid.size, scan.grid.size, strict=True)):
         return place_on_grid(scan, grid)
     axes = zip((grid.x, grid.y), scan.grid.nodes, scan.grid.spacing, strict=True)
@@ -111,11 +96,7 @@ def _mirrored(scan: Surface, grid: Grid) -> Surface:
 
 
 def _pixel(along: Array, n: int, h: float) -> Array:
-    """Convert coordinates (m) on the tiled surface to fractional pixel indices in the scan.
-
-    `along` are coordinates along one axis, x or y. The scan has `n` pixels with the spacing `h` (m)
-    along this axis.
-    """
+    """Fractional pixel indices in the scan of coordinates `along` (m) one axis of the tiles."""
     from_edge = np.mod(along / h + n // 2 + 0.5, 2 * n)
     folded: Array = np.minimum(from_edge, 2 * n - from_edge) - 0.5
     return np.clip(folded, 0.0, n - 1.0)

@@ -1,12 +1,7 @@
 """Random rough surfaces with prescribed wave amplitudes and height distribution.
 
-The heights are
-
-    z = IFFT(H · FFT(white noise)),
-
-where the module `spectra` computes the amplitudes H (Hu and Tonder 1992, Int. J. Mach. Tools
-Manufact. 32, 83–90). Heights are normally distributed unless another skewness or kurtosis is given
-(module `heights`).
+z = IFFT(H · FFT(white noise)) with the amplitudes H of `spectra` (Hu and Tonder 1992, Int. J. Mach.
+Tools Manufact. 32, 83–90); `heights` gives another skewness or kurtosis than a normal distribution.
 """
 
 from __future__ import annotations
@@ -64,13 +59,8 @@ def generate_surface(
 ) -> Surface:
     """Generate a random surface with zero mean and a given rms height.
 
-    The same arguments give the same surface on every machine and with every NumPy version, within
-    rounding. The noise depends on both seed and grid, so the same seed on a finer grid gives a
-    different surface. Use `refine` to get the same surface on a finer grid.
-
-    For heights that are not normally distributed, the noise is transformed before it is filtered.
-    If the filtered noise cannot have the required skewness and kurtosis, heights and wave
-    amplitudes are adjusted alternately, and the provenance states the misfit of the amplitudes.
+    The same arguments give the same surface on every machine, within rounding. The noise depends on
+    seed and grid; use `refine` to get the same surface on a finer grid.
 
     Args:
         grid: Grid of the surface.
@@ -78,24 +68,25 @@ def generate_surface(
         rms: Root mean square height Rq (m). The surface has exactly this value.
         seed: Seed of the noise, not negative.
         skewness: Skewness of the heights (dimensionless).
-        kurtosis: Kurtosis of the heights (dimensionless), 3 for a normal distribution; at
-            least skewness² + 1.1.
+        kurtosis: Kurtosis of the heights (dimensionless), 3 for a normal distribution; at least
+            skewness² + 1.1. Where filtered noise cannot have it, the provenance states the misfit
+            of the wave amplitudes.
         periodic: Whether opposite edges of the surface match (bool).
-        **waves: Parameters of the waves of this `kind`. An argument of None counts as left out.
+        **waves: Parameters of the waves of this `kind`; None counts as left out.
             `correlation_length` (m; exponential, gaussian): length over which the autocorrelation
             falls to 10 %, or two such lengths, along and across the lay.
             `lay` (rad; exponential, gaussian): angle of the lay from the x axis, default 0.
             `hurst` (dimensionless; self-affine): Hurst exponent.
-            `rolloff` (m; self-affine): wavelength above which the spectrum is constant; without
-            `rolloff` the power law extends to the size of the domain.
+            `rolloff` (m; self-affine): wavelength above which the spectrum is constant, by default
+            the size of the domain.
             `shortest` (m; all kinds): wavelength below which waves are left out.
 
     Returns:
         Surface on `grid`.
 
     Raises:
-        SurfaceError: The kind is unknown, an argument does not belong to this kind or is out of
-            range, the grid cannot represent the waves, or the skewness and kurtosis are impossible.
+        SurfaceError: An argument does not belong to this kind or is out of range, or the grid
+            cannot represent the waves.
         TypeError: An argument is unknown.
     """
     spectrum = _spectrum(kind, waves)
@@ -115,7 +106,7 @@ def generate_surface(
     height, made = _heights(grid, spectrum, seed, (skewness, kurtosis), periodic)
     height -= height.mean()
     height *= rms / math.sqrt(np.mean(height**2))
-    asked = {
+    provenance = {
         "source": "generated",
         **made,
         "kind": kind,
@@ -127,11 +118,10 @@ def generate_surface(
         "noise": "PCG64 raw stream, inverse normal distribution",
         "periodicity": "periodic over the domain" if periodic else "none",
     }
-    return Surface(height, grid, asked)
+    return Surface(height, grid, provenance)
 
 
 def _spectrum(kind: RoughnessKind, waves: Waves) -> Spectrum:
-    """Return the spectrum of `kind`. Raises `SurfaceError` for an argument of another kind."""
     if kind not in _WAVES:
         raise SurfaceError(
             f"kind: {kind!r} is unknown; choose 'exponential', 'gaussian' or 'self-affine'"
@@ -161,10 +151,7 @@ def _spectrum(kind: RoughnessKind, waves: Waves) -> Spectrum:
 def _heights(
     grid: Grid, spectrum: Spectrum, seed: int, wanted: tuple[float, float], periodic: bool
 ) -> tuple[Array, dict[str, str | float]]:
-    """Generate heights with the skewness and kurtosis `wanted`, and with an arbitrary rms height.
-
-    Also return provenance entries that name the method.
-    """
+    """Heights with the skewness and kurtosis `wanted` and any rms, and provenance of the method."""
     from scipy.fft import irfft2, rfft2
 
     larger = grid if periodic else _enlarged(grid, spectrum.longest)
@@ -197,10 +184,6 @@ def _heights(
 
 
 def _enlarged(grid: Grid, longest: float) -> Grid:
-    """Return a larger grid, from which a surface of the size of `grid` is cut.
-
-    The opposite edges of the cut surface are uncorrelated.
-    """
     from scipy.fft import next_fast_len
 
     nx, ny = (

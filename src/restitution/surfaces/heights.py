@@ -1,19 +1,12 @@
 """Rough surfaces with given wave amplitudes and given skewness and kurtosis of the heights.
 
-There are two methods. `filtered` transforms white noise η so that it has a skewness Sk_η and a
-kurtosis K_η (module `johnson`). Then it filters the noise. The filtered heights z have the skewness
-and kurtosis
+`filtered` filters transformed white noise η (module `johnson`) with the impulse response θ (Watson
+and Spedding 1982, Wear 83, 215–231; Manesh et al. 2010, Tribol. Int. 43, 2218–2225),
 
-    Sk_z = Sk_η Σθ³/(Σθ²)^{3/2},   K_z − 3 = (K_η − 3) Σθ⁴/(Σθ²)²,
+    Sk_z = Sk_η Σθ³/(Σθ²)^{3/2},   K_z − 3 = (K_η − 3) Σθ⁴/(Σθ²)²;
 
-where θ is the impulse response of the filter (Watson and Spedding 1982, Wear 83, 215–231; Manesh et
-al. 2010, Tribol. Int. 43, 2218–2225). A filtered height is a sum over many nodes, so it tends to a
-normal distribution. Large skewness and kurtosis therefore cannot be reached.
-
-`adjusted` alternates two steps (Schreiber and Schmitz 1996, Phys. Rev. Lett. 77, 635–638). One step
-replaces the heights by heights of the desired distribution, in the same rank order. The other step
-replaces the amplitudes by the desired amplitudes, with the same phases. The last step replaces the
-heights, so their distribution is exact and the amplitudes are approximate.
+`adjusted` reaches larger values, by imposing heights and amplitudes alternately (Schreiber and
+Schmitz 1996, Phys. Rev. Lett. 77, 635–638).
 """
 
 from __future__ import annotations
@@ -34,10 +27,7 @@ _STANDSTILL = 0.05  # the adjustment ends if the misfit decreases by less than t
 
 
 def filtered(noise: Array, H: Array, skewness: float, kurtosis: float) -> Array | None:
-    """Transform `noise` and filter it with the amplitudes `H`.
-
-    Return heights with the given `skewness` and `kurtosis`, or None if these cannot be reached.
-    """
+    """`noise` of other moments, filtered by the amplitudes `H`; None if out of reach."""
     from scipy.fft import irfft2, rfft2
 
     theta = irfft2(H, s=noise.shape)
@@ -46,11 +36,11 @@ def filtered(noise: Array, H: Array, skewness: float, kurtosis: float) -> Array 
     peaking = float((theta**4).sum()) / squares**2
     if skewing == 0 and skewness != 0:
         return None
-    asked = skewness / skewing if skewness else 0.0, 3 + (kurtosis - 3) / peaking
+    target = skewness / skewing if skewness else 0.0, 3 + (kurtosis - 3) / peaking
     for _ in range(_CORRECTIONS):
-        if abs(asked[0]) > _STRONGEST[0] or asked[1] > _STRONGEST[1]:
+        if abs(target[0]) > _STRONGEST[0] or target[1] > _STRONGEST[1]:
             return None
-        if (translate := translation(*asked)) is None:
+        if (translate := translation(*target)) is None:
             return None
         z: Array = irfft2(H * rfft2(translate(noise)), s=noise.shape)
         skew, kurt = moments(z)
@@ -58,20 +48,15 @@ def filtered(noise: Array, H: Array, skewness: float, kurtosis: float) -> Array 
             return z
         # The skewness and kurtosis of these heights miss the given values by chance. Correct the
         # skewness and kurtosis that are requested for the noise accordingly.
-        asked = (
-            asked[0] + (skewness - skew) / skewing if skewing else 0.0,
-            asked[1] + (kurtosis - kurt) / peaking,
+        target = (
+            target[0] + (skewness - skew) / skewing if skewing else 0.0,
+            target[1] + (kurtosis - kurt) / peaking,
         )
     return None
 
 
 def adjusted(z: Array, heights: Array) -> tuple[Array, float]:
-    """Arrange the sorted `heights` so that their Fourier amplitudes are nearly those of `z`.
-
-    Also return the misfit of the amplitudes. The target amplitudes are the Fourier amplitudes of
-    `z`, scaled to the mean square of `heights`. The misfit is the root mean square deviation from
-    the target amplitudes, relative to the root mean square of the target amplitudes.
-    """
+    """Sorted `heights` in the order of nearly the Fourier amplitudes of `z`, and their misfit."""
     from scipy.fft import irfft2, rfft2
 
     modes = rfft2(z - z.mean())
@@ -97,10 +82,7 @@ def in_order(heights: Array, z: Array) -> Array:
 
 
 def distribution(n: int, skewness: float, kurtosis: float) -> Array | None:
-    """Return n sorted heights with mean 0, variance 1 and nearly the given skewness and kurtosis.
-
-    Return None if no such distribution is found.
-    """
+    """n sorted heights with mean 0, variance 1 and nearly these moments; None if not found."""
     from scipy.special import ndtri
 
     if (translate := translation(skewness, kurtosis)) is None:

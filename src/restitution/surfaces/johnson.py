@@ -2,13 +2,9 @@
 
     unbounded (SU):  x = sinh((z + γ)/δ)        bounded (SB):  x = 1/(1 + exp(−(z − γ)/δ))
 
-Here z is a standard normal variable. The parameters γ and δ determine the skewness and kurtosis of
-x. In the plane of skewness and kurtosis, each form covers one region. The line between the regions
-belongs to the lognormal distribution, which is the limit of both forms. Kurtosis is defined as in
-ISO 25178: a normal variable has the kurtosis 3.
-
-Sources: Johnson (1949), Biometrika 36, 149–176. Fit of the parameters: Hill, Hill and Holder
-(1976), Applied Statistics 25, 180–189 (AS 99).
+Each form covers one region of skewness and kurtosis (3 for a normal variable, as in ISO 25178);
+between them lies the lognormal distribution. Sources: Johnson (1949), Biometrika 36, 149–176; Hill,
+Hill and Holder (1976), Applied Statistics 25, 180–189 (AS 99).
 """
 
 from __future__ import annotations
@@ -40,10 +36,9 @@ def possible(skewness: float, kurtosis: float) -> bool:
 
 
 def translation(skewness: float, kurtosis: float) -> Callable[[Array], Array] | None:
-    """Return an increasing function that transforms a standard normal variable.
+    """Increasing function that gives a standard normal variable these moments, mean 0, variance 1.
 
-    The transformed variable has the given skewness and kurtosis, mean 0 and variance 1. Return None
-    if no parameters are found that give the skewness within 0.002 and the kurtosis within 0.2 %.
+    None if no parameters give the skewness within 0.002 and the kurtosis within 0.2 %.
     """
     if skewness == 0 and kurtosis == 3:
         return np.array
@@ -68,7 +63,6 @@ def _bounded(z: Array, gamma: float, log_delta: float) -> Array:
 
 
 def _moments(form: _Form, shape: Array) -> tuple[float, float, float, float]:
-    """Mean, standard deviation, skewness and kurtosis of x, by Gauss–Hermite quadrature."""
     weight = _WEIGHTS / _WEIGHTS.sum()
     x = form(_ABSCISSAE, *shape)
     mean = float(weight @ x)
@@ -83,7 +77,6 @@ def _moments(form: _Form, shape: Array) -> tuple[float, float, float, float]:
 
 
 def _best_fit(skewness: float, kurtosis: float) -> tuple[float, _Form, Array]:
-    """Return the misfit, the form and the parameters (γ, ln δ) of the best fit."""
     best = math.inf, _unbounded, np.zeros(2)
     for form, start in product((_unbounded, _bounded), _STARTS):
         shape, miss = _fitted(form, start, skewness, kurtosis)
@@ -97,7 +90,7 @@ def _best_fit(skewness: float, kurtosis: float) -> tuple[float, _Form, Array]:
 def _fitted(
     form: _Form, start: tuple[float, float], skewness: float, kurtosis: float
 ) -> tuple[Array, float]:
-    """Fit the parameters (γ, ln δ) of a form, starting at `start`; also return the misfit."""
+    """Parameters (γ, ln δ) of a form, fitted from `start`, and their misfit."""
     from scipy.optimize import least_squares
 
     def miss(shape: Array) -> Array:
@@ -106,5 +99,5 @@ def _fitted(
         return np.array([skew - skewness, math.log(kurt / kurtosis)])
 
     with np.errstate(over="ignore", invalid="ignore"):
-        found = least_squares(miss, start, bounds=([-30, -2.5], [30, 4]), xtol=1e-12, ftol=1e-14)
-    return found.x, float(np.abs(found.fun).max())
+        fit = least_squares(miss, start, bounds=([-30, -2.5], [30, 4]), xtol=1e-12, ftol=1e-14)
+    return fit.x, float(np.abs(fit.fun).max())

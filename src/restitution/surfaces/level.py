@@ -20,16 +20,13 @@ _DEGREE = {"center": 0, "tilt": 1, "curvature": 2}
 def level(surface: Surface, how: Levelling) -> Surface:
     """Subtract the mean, or the least-squares plane or paraboloid, from the heights.
 
-    The paraboloid has the terms 1, x, y, x², xy and y². The provenance entry `levelling` lists
-    all methods applied so far, in order. `subtracted_radius_m` is the radius of the sphere with the
-    mean curvature of the paraboloid, negative for a hollow.
-
     Args:
         surface: Surface to level.
         how: Method, `none`, `center` (mean), `tilt` (plane) or `curvature` (paraboloid).
 
     Returns:
-        Levelled surface.
+        Levelled surface. The provenance lists all methods so far (`levelling`) and the radius of
+        the paraboloid's mean curvature (`subtracted_radius_m`), negative for a hollow.
 
     Raises:
         SurfaceError: `how` is unknown.
@@ -51,10 +48,7 @@ def level(surface: Surface, how: Levelling) -> Surface:
 
 
 def _mean_curvature(paraboloid: Array, grid: Grid) -> float:
-    """Mean of the second derivatives of a paraboloid along x and y (1/m).
-
-    The result is 0 if the grid has fewer than 3 pixels along an axis.
-    """
+    """Mean curvature (1/m) of a paraboloid; 0 with fewer than 3 pixels along an axis."""
     if min(paraboloid.shape) < 3:
         return 0.0
     along_x, along_y = paraboloid[:3, 0], paraboloid[0, :3]
@@ -63,11 +57,6 @@ def _mean_curvature(paraboloid: Array, grid: Grid) -> float:
 
 
 def _least_squares_form(height: Array, degree: int) -> Array:
-    """Least-squares polynomial of total degree `degree` fitted to the heights, shape (nx, ny).
-
-    On a regular grid the products of orthonormal polynomials along x and y are orthonormal. So each
-    coefficient is a scalar product, and no least-squares matrix with a row per pixel is needed.
-    """
     P, Q = (orthonormal_polynomials(n, degree) for n in height.shape)
     coefficients = P.T @ height @ Q
     power_x, power_y = np.indices(coefficients.shape)

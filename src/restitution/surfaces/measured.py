@@ -63,34 +63,26 @@ def read_surface(
 ) -> Surface:
     """Read a measured height map, without levelling it.
 
-    - `.npy`, `.npz`: a 2-D array in metres, `array[i, j]` at x_i, y_j.
-    - `.txt`, `.csv`, `.dat`, `.asc`: a matrix in metres; each line of the file is a scan line
-      (constant y).
-    - All other files, and text that is not a plain matrix: NanoFocus, SDF and Wyko text, and any
-      format that SurfaceTopography can read. Install the extra `measured` for these formats.
-
-    The provenance contains the file with its SHA-256, format and channel, the size of the scan, and
-    the number of undefined pixels. Its `notice` names what is doubtful, and values of the file that
-    an argument replaced.
+    `.npy` and `.npz` hold a 2-D array in metres, `array[i, j]` at x_i, y_j; `.txt`, `.csv`, `.dat`
+    and `.asc` a matrix in metres, with a scan line (constant y) on each line. All other files are
+    NanoFocus, SDF, Wyko text, or a format of SurfaceTopography (extra `measured`).
 
     Args:
         path: File to read.
-        channel: Number of the channel, counted from 0; None selects the reader's default height
-            channel.
-        size: Edge lengths of the scan along x and y (m): number of pixels times pixel size.
-            Required if the file does not contain the lengths; otherwise it replaces them.
-        height_unit: Unit of the heights, such as "um"; it replaces the unit in the file. The
-            default is the unit in the file, or metres.
+        channel: Number of the channel, from 0; None selects the reader's default height channel.
+        size: Edge lengths along x and y (m), number of pixels times pixel size; they replace those
+            in the file.
+        height_unit: Unit of the heights, such as "um"; it replaces that in the file, or metres.
         undefined: `interpolate` fills undefined pixels harmonically from their neighbours, if at
             most 20 % of all pixels are undefined. `error` rejects a scan with undefined pixels.
         within: Ranges of x and y (m) to read, as in `crop`; None reads the whole range.
 
     Returns:
-        Surface with heights (m), shape (nx, ny).
+        Surface with heights (m), shape (nx, ny). The `notice` in its provenance names what is
+        doubtful.
 
     Raises:
-        SurfaceError: The file cannot be read or its content cannot be used, or an argument is
-            invalid.
+        SurfaceError: The file or an argument cannot be used.
     """
     _check_arguments(undefined, size, height_unit)
     file = Path(path)
@@ -153,7 +145,6 @@ def _check_shape(file: Path, heights: Array) -> None:
 
 
 def _check_readable(file: Path) -> None:
-    """Raise `SurfaceError` if a file is missing, unreadable, not regular, empty or too large."""
     try:
         kind = file.stat()
         if stat.S_ISDIR(kind.st_mode):
@@ -221,7 +212,6 @@ def _read_scan(file: Path, channel: int | None) -> Scan:
 
 
 def _single_channel(suffix: str, head: bytes) -> Callable[[Path], Scan] | None:
-    """The reader of a format that contains one height map; None for other formats."""
     if SDF_MAGIC.match(head):
         return read_sdf
     if head.startswith(WYKO_MAGIC):
@@ -236,7 +226,6 @@ def _single_channel(suffix: str, head: bytes) -> Callable[[Path], Scan] | None:
 def _agreed_size(
     file: Path, scan: Scan, given: tuple[float, float] | None
 ) -> tuple[tuple[float, float], list[str]]:
-    """Edge lengths (m) from `given` or from the file, and a notice if they differ."""
     if given is None and not all(
         side is None or (math.isfinite(side) and side > 0) for side in scan.size
     ):
@@ -269,7 +258,6 @@ def _agreed_size(
 
 
 def _in_unit(file: Path, scan: Scan, given: str | None) -> tuple[Array, list[str]]:
-    """Heights (m) in the unit `given`, and a notice if the file states another unit."""
     if given is None:
         if scan.unit is None:
             raise RefusedSurfaceError(
@@ -307,7 +295,6 @@ def _doubtful_size(file: Path, grid: Grid, *, given: bool) -> Iterator[str]:
 def _part(
     heights: Array, grid: Grid, within: tuple[Range | None, Range | None]
 ) -> tuple[Array, Grid, dict[str, str | float]]:
-    """The part of the scan `within` ranges, its grid, and what the provenance says of it."""
     if within == (None, None):
         return heights, grid, {}
     # `crop` accepts only defined heights, so the marks of undefined pixels are cropped apart.

@@ -9,7 +9,7 @@ from restitution.surfaces.surface import Array
 
 
 def white_noise(shape: tuple[int, int], seed: int) -> Array:
-    """Return independent standard normal numbers in an array of this shape."""
+    """Independent standard normal numbers in an array of this shape."""
     from scipy.special import ndtri
 
     # NumPy never changes the raw stream of a bit generator, but the methods of Generator (such as
@@ -21,12 +21,11 @@ def white_noise(shape: tuple[int, int], seed: int) -> Array:
 
 
 def wave_phases(seed: int, numbers: NDArray[np.int64], count: int) -> Array:
-    """Random phases (rad) of the waves (m, n) with m in `numbers` and n in 0 … `count` − 1.
+    """Random phases (rad) of the waves of m periods along x, n in 0 … `count` − 1 along y.
 
-    m and n are the numbers of periods along x and y. The shape is (numbers.size, count). A phase
-    depends only on `seed`, m and n. So a finer grid keeps the phases of a coarser grid and adds
-    phases of shorter waves. The phases of waves (m, 0) and (−m, 0) have opposite signs, because
-    heights are real.
+    The shape is (numbers.size, count). A phase depends only on `seed`, m and n, so a finer grid
+    keeps the phases of a coarser grid. Waves (m, 0) and (−m, 0) have opposite phases: heights are
+    real.
     """
     phases = np.empty((numbers.size, count))
     for row, m in enumerate(numbers.tolist()):
@@ -43,5 +42,4 @@ def _stream(seed: int, m: int) -> np.random.Philox:
 
 
 def _random_bits(stream: np.random.BitGenerator, count: int) -> Array:
-    """Return `count` random whole numbers of 52 bits from the raw `stream`."""
     return (stream.random_raw(count) >> np.uint64(12)).astype(np.float64)

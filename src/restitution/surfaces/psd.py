@@ -1,16 +1,10 @@
-"""Power spectral density of a surface, after Jacobs, Junge and Pastewka (2017).
+"""Power spectral density of a surface: C(q) = |∫ z exp(−iq·r) d²r|²/A, Sq² = (2π)⁻² ∫ C d²q.
 
-    C(q) = |∫ z exp(−iq·r) d²r|²/A,   Sq² = (2π)⁻² ∫ C d²q.
-
-C is in m⁴, q is the wave vector (rad/m), z(r) the height at the position r minus the mean height,
-and A the area of the surface. A scan is not periodic, so the jump between opposite edges would
-dominate the spectrum. The scan is therefore multiplied by each of nine sine tapers (three along
-each axis), and the nine spectra are averaged (Riedel and Sidorenko 1995, IEEE Trans. Signal
-Process. 43, 188–195). Together the tapers cover all of the scan except the rim. The leakage from
-long waves to short waves decreases with the fourth power of the wave number. The resolution in
-spatial frequency (1/m) is ±1.5 divided by the size of the scan.
-
-Source: Jacobs, Junge and Pastewka (2017), Surf. Topogr. 5, 013001, eqs 2 and 6.
+Jacobs, Junge and Pastewka (2017), Surf. Topogr. 5, 013001, eqs 2 and 6. C is in m⁴, q is the wave
+vector (rad/m). A scan is not periodic, so it is multiplied by each of nine sine tapers, and the
+spectra are averaged (Riedel and Sidorenko 1995, IEEE Trans. Signal Process. 43, 188–195). The
+leakage from long to short waves then falls with the fourth power of the wave number. The resolution
+in spatial frequency (1/m) is ±1.5 divided by the size of the scan.
 """
 
 from __future__ import annotations
@@ -29,11 +23,7 @@ _SECTOR = 15  # half the width of the sectors around the x and y axes (°)
 
 
 class RadialSpectrum(NamedTuple):
-    """Power spectral density averaged over directions, in bands of the wave number.
-
-    `wave_number` is the mean wave number of each band (rad/m), and `density` the mean power
-    spectral density (m⁴).
-    """
+    """Mean wave number (rad/m) and mean power spectral density (m⁴) of bands of the wave number."""
 
     wave_number: Array
     density: Array
@@ -49,8 +39,7 @@ class DirectedSpectrum(NamedTuple):
 def power_spectral_density(surface: Surface) -> Array:
     """Power spectral density C (m⁴) at the wave vectors 2π·`numpy.fft.fftfreq(n, spacing)`.
 
-    The shape is `grid.nodes`. C is exact for a periodic surface; otherwise it is estimated with
-    tapers.
+    Exact for a periodic surface, otherwise estimated with tapers; the shape is `grid.nodes`.
     """
     from scipy.fft import fft2
 
@@ -66,11 +55,10 @@ def power_spectral_density(surface: Surface) -> Array:
 
 
 def radial_spectrum(surface: Surface, density: Array | None = None) -> RadialSpectrum:
-    """Power spectral density in bands of the wave number, averaged over directions.
+    """Power spectral density in bands of a quarter of an octave, averaged over directions.
 
-    `density` is the `power_spectral_density` of `surface`, if it is already known. Wave vectors at
-    which `density` is NaN are left out. Bands are about a quarter of an octave wide. The highest
-    band ends at the shortest wave that the grid resolves along both axes.
+    `density` is the `power_spectral_density` of `surface`, if already known, without its NaN. The
+    highest band ends at the shortest wave that the grid resolves along both axes.
     """
     C = power_spectral_density(surface) if density is None else density
     q = wave_numbers(C.shape, surface.grid.spacing)
@@ -112,6 +100,5 @@ def wave_numbers(nodes: tuple[int, ...], spacing: tuple[float, float]) -> Array:
 
 
 def _tapers(n: int) -> list[Array]:
-    """Sine tapers with a mean square of 1."""
     at = (np.arange(n) + 1) * math.pi / (n + 1)
     return [math.sqrt(2 * n / (n + 1)) * np.sin(k * at) for k in range(1, _TAPERS + 1)]

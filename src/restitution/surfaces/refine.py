@@ -12,14 +12,10 @@ from restitution.surfaces.surface import Array, Surface, is_periodic
 
 @typed
 def refine(surface: Surface, factor: int) -> Surface:
-    """Resample a surface to smaller cells over the same domain.
-
-    The new heights are values of the trigonometric polynomial through the old heights (zero padding
-    of the spectrum), so no wave is added. A surface that is not periodic is first extended by its
-    mirror image, to avoid ringing at its edges. The origins of the two grids coincide (see `Grid`).
+    """Resample a surface to smaller cells over the same domain, without adding waves.
 
     Args:
-        surface: Surface to refine.
+        surface: Surface to refine; its mirror image extends it first if it is not periodic.
         factor: Number of new cells per old cell along each axis, at least 1.
 
     Returns:
@@ -42,13 +38,9 @@ def refine(surface: Surface, factor: int) -> Surface:
 
 
 def coarsen(surface: Surface, factor: int = 2) -> Surface:
-    """Resample `surface` to cells `factor` times as large.
+    """Resample `surface` to cells nearly `factor` times as large, a whole number of which fits.
 
-    Waves that are not longer than two new cells are removed. Longer waves do not change.
-
-    A whole number of new cells covers the domain. If the number of nodes is not a multiple of
-    `factor`, the new cells are therefore slightly smaller than `factor` old cells. Raises
-    `SurfaceError` for a factor below 1.
+    Waves that are not longer than two new cells are removed. `SurfaceError` for a factor below 1.
     """
     if factor < 1:
         raise SurfaceError(f"factor: {factor} is not a positive integer")
@@ -59,7 +51,6 @@ def coarsen(surface: Surface, factor: int = 2) -> Surface:
 
 
 def _resampled(surface: Surface, nodes: tuple[int, int]) -> Array:
-    """Heights of `surface` on a grid of `nodes` (nx, ny) over the same domain."""
     height = surface.height
     for n in nodes:
         height = _at_nodes(height, n, periodic=is_periodic(surface)).T
@@ -75,7 +66,6 @@ def divided(grid: Grid, factor: int) -> Grid:
 
 
 def _at_nodes(height: Array, nodes: int, *, periodic: bool) -> Array:
-    """Resample `height` along the first axis to another number of nodes over the same length."""
     from scipy.fft import irfft, rfft
 
     n = height.shape[0]

@@ -1,8 +1,4 @@
-"""Surface errors that store the reason and the remedy in separate attributes.
-
-The remedy names Python arguments. The package `case` replaces it by a remedy that names keys of the
-case file.
-"""
+"""Errors of surfaces; `case` replaces their remedy by one in keys of the case file."""
 
 from __future__ import annotations
 
@@ -26,11 +22,7 @@ Code = Literal[
 
 
 class RefusedSurfaceError(SurfaceError):
-    """The surface cannot be made.
-
-    `fact` states the reason, `code` is an identifier of the reason, and `remedy` names the Python
-    arguments to change.
-    """
+    """The surface cannot be made: the reason `fact`, its identifier `code`, and the `remedy`."""
 
     def __init__(self, code: Code, fact: str, remedy: str) -> None:
         super().__init__(code, fact, remedy)

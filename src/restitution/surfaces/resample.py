@@ -19,23 +19,18 @@ _ROUNDING = 1e-9  # largest relative difference of two lengths that count as equ
 
 @typed
 def place_on_grid(surface: Surface, grid: Grid) -> Surface:
-    """Resample the middle of a surface to the cells of a grid.
+    """Resample the middle of a surface to the cells of a grid with the same origin.
 
-    The origins of the two grids coincide (see `Grid`). If the spacings are equal, the cells
-    coincide with pixels, so the surface is cropped and the heights do not change. Otherwise a cubic
-    spline through the pixel centres is evaluated at the cell centres. Along an axis where cells are
-    larger than pixels, waves shorter than two cells are removed first, because they would be
-    aliased to longer waves. Heights are not extrapolated: between the outermost pixel centres and
-    the edges of the surface they are constant.
-
-    The method (`placement`) and data on the removed waves are added to the provenance.
+    With equal spacings, the surface is cropped. Otherwise a cubic spline through the pixel centres
+    is evaluated, after removal of waves shorter than two cells; beyond the outermost centres
+    heights are constant.
 
     Args:
         surface: Surface to resample, such as a scan.
         grid: Grid of the new surface, at most as large as `surface`.
 
     Returns:
-        Surface on `grid`.
+        Surface on `grid`; the provenance states the method (`placement`) and the removed waves.
 
     Raises:
         SurfaceError: The grid is larger than the surface.
@@ -63,12 +58,10 @@ def place_on_grid(surface: Surface, grid: Grid) -> Surface:
 
 
 def carried(surface: Surface, spacing: tuple[float, float], *, mirrored: bool = False) -> Array:
-    """Return the heights of `surface` without waves that are too short for cells of `spacing` (m).
+    """Heights of `surface` without waves shorter than two cells of `spacing` (m) along an axis.
 
-    Waves shorter than two cells along either axis are removed. The filter continues the surface
-    beyond its edges. If `mirrored`, the surface is continued by its mirror image. Otherwise the
-    straight line through the first and the last height of each row (or column) is subtracted, and
-    the remainder is continued antisymmetrically.
+    The filter continues the surface by its mirror image if `mirrored`, else antisymmetrically about
+    the straight line through the ends of each row or column.
     """
     height = surface.height
     keep = _carried_mirrored if mirrored else _carried
@@ -81,17 +74,10 @@ def carried(surface: Surface, spacing: tuple[float, float], *, mirrored: bool = 
 
 
 def left_out(surface: Surface, kept: Array, spacing: tuple[float, float]) -> dict[str, float]:
-    """Provenance entries that describe the waves removed by resampling to cells of `spacing` (m).
+    """Provenance entries on the waves removed for cells of `spacing` (m), and on those before.
 
-    `kept` are the heights of `surface` without these waves. The entries also take into account the
-    waves removed by earlier resampling:
-
-    - `removed_rms_m`: rms height of the removed waves
-    - `removed_slope`: rms slope of the removed waves divided by the rms slope of the original
-      surface
-    - `shortest_carried_m`: wavelength of the shortest remaining wave
-    - `pixel_x_m`, `pixel_y_m`: pixel size. If `surface` was resampled before from larger pixels,
-      it is the size of these larger pixels.
+    `kept` are the heights of `surface` without these waves. `removed_slope` is relative to the
+    original surface; the pixel size is that of the largest pixels so far.
     """
     before = surface.provenance
     pixel = [
@@ -140,10 +126,7 @@ def crop_to(height: Array, nodes: tuple[int, int]) -> Array:
 
 
 def _carried(height: Array, ratio: float) -> Array:
-    """Remove waves shorter than 2/ratio pixels along the first axis.
-
-    `ratio` is the pixel size divided by the cell size of the new grid.
-    """
+    """Remove waves shorter than 2/ratio pixels along the first axis; `ratio` is pixel by cell."""
     from scipy.fft import dst, idst
 
     n = height.shape[0]
@@ -158,10 +141,6 @@ def _carried(height: Array, ratio: float) -> Array:
 
 
 def _carried_mirrored(height: Array, ratio: float) -> Array:
-    """Remove waves shorter than 2/ratio pixels along the first axis, as `_carried` does.
-
-    Here the heights are continued by their mirror image, without subtracting a line.
-    """
     from scipy.fft import dct, idct
 
     modes = dct(height, type=2, axis=0)  # cosine k has a wavelength of 2n/k pixels
@@ -170,11 +149,7 @@ def _carried_mirrored(height: Array, ratio: float) -> Array:
 
 
 def spline(height: Array, at: Sequence[Array], to: Sequence[Array]) -> Array:
-    """Interpolate `height` by a cubic spline.
-
-    `at` contains the old coordinates along x and y, and `to` the new ones. Heights are constant
-    beyond the ends of the old coordinates.
-    """
+    """`height` interpolated from the coordinates `at` along x and y to others; constant beyond."""
     from scipy.interpolate import make_interp_spline
 
     for old, new in zip(at, to, strict=True):

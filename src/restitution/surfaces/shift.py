@@ -15,10 +15,9 @@ _STEPS = 1 / 1.324717957244746, 1 / 1.324717957244746**2
 
 
 def place_of(surface: Surface, number: int) -> Surface:
-    """Move `surface` so that point `number` of a fixed sequence is in the middle.
+    """Move `surface`, continued by mirror images, to a point of a fixed sequence.
 
-    Point 0 is the middle itself. For any N, the first N points of the sequence fill the surface
-    evenly. Beyond its edges, the surface is continued by its mirror image.
+    Point 0 is the middle itself. The first N points fill the surface evenly.
     """
     if number == 0:
         return surface
@@ -36,10 +35,7 @@ def place_of(surface: Surface, number: int) -> Surface:
 
 
 def note_mirrored_part(surface: Surface) -> Surface:
-    """Add a `notice` if part of `surface` is the mirror image of a moved scan.
-
-    `surface` is a scan that `place_of` moved and that was then placed on a grid.
-    """
+    """Add a `notice` if part of a moved and placed `surface` is a mirror image."""
     origin = surface.provenance
     if not origin.get("place") or "extension" in origin:
         return surface

@@ -1,21 +1,4 @@
-"""Spectra of generated surfaces: wave amplitudes as functions of the wave vector.
-
-`Autocorrelated` surfaces have the autocorrelation
-
-    R(τ) = Rq² exp(−2.3 ρ)   (exponential)     R(τ) = Rq² exp(−2.3 ρ²)   (Gaussian)
-    ρ = sqrt((τ₁/β₁)² + (τ₂/β₂)²),
-
-where Rq is the rms height, τ₁ and τ₂ are the lags along and across the lay, and β₁ and β₂ are the
-correlation lengths. At a lag of β₁ along the lay, or β₂ across it, the autocorrelation has fallen
-to 10 % (e^−2.3 = 0.100). Source: Hu and Tonder (1992), Int. J. Mach. Tools Manufact. 32, 83–90.
-
-`SelfAffine` surfaces have the power spectral density
-
-    C(q) = C₀ for q < q_r,   C₀ (q/q_r)^−2(H+1) for q_r ≤ q ≤ q_s,   0 for q > q_s,
-
-where H is the Hurst exponent, 2π/q_r the roll-off wavelength and 2π/q_s the shortest wavelength.
-Source: Persson et al. (2005), J. Phys.: Condens. Matter 17, R1–R62.
-"""
+"""Spectra of generated surfaces: wave amplitudes as functions of the wave vector."""
 
 from __future__ import annotations
 
@@ -32,10 +15,12 @@ from restitution.surfaces.surface import Array
 
 @dataclass(frozen=True)
 class Autocorrelated:
-    """Waves of a surface with an exponential or Gaussian autocorrelation.
+    """Exponential or Gaussian autocorrelation, R = Rq² exp(−2.3 ρ) or Rq² exp(−2.3 ρ²).
 
-    `correlation_length` contains the lengths along and across the lay (m). `lay` is the angle of
-    the lay from the x axis (rad), and `shortest` the shortest wavelength (m).
+    ρ² = (τ₁/β₁)² + (τ₂/β₂)² with the lags τ along and across the lay and the `correlation_length` β
+    (m), at which R has fallen to 10 %. `lay` is the angle of the lay from the x axis (rad),
+    `shortest` the shortest wavelength (m). Hu and Tonder (1992), Int. J. Mach. Tools Manufact. 32,
+    83–90.
     """
 
     kind: Literal["exponential", "gaussian"]
@@ -99,11 +84,11 @@ class Autocorrelated:
 
 @dataclass(frozen=True)
 class SelfAffine:
-    """Waves of a self-affine surface, with the Hurst exponent `hurst`.
+    """Power spectral density ∝ q^−2(H+1) between the wavelengths `shortest` and `rolloff` (m).
 
-    Between the wavelengths `shortest` and `rolloff` (m), the power spectral density is a power law.
-    At longer wavelengths it is constant. Without `rolloff` the power law extends to the size of the
-    domain.
+    H is the exponent `hurst`. At longer wavelengths the density is constant; without `rolloff` the
+    power law extends to the size of the domain. Persson et al. (2005), J. Phys.: Condens. Matter
+    17, R1–R62.
     """
 
     hurst: float
@@ -155,14 +140,12 @@ Spectrum = Autocorrelated | SelfAffine
 
 
 def _without_short_waves(H: Array, grid: Grid, shortest: float | None) -> Array:
-    """Set the amplitudes `H` of waves shorter than `shortest` (m) to zero."""
     if shortest is not None:
         H[_wave_numbers(grid) > 2 * math.pi / shortest * (1 + 1e-9)] = 0.0
     return H
 
 
 def _wave_numbers(grid: Grid) -> Array:
-    """Wave numbers (rad/m) of the modes of `rfft2`."""
     (nx, ny), (hx, hy) = grid.nodes, grid.spacing
     qx, qy = np.fft.fftfreq(nx, hx)[:, None], np.fft.rfftfreq(ny, hy)[None, :]
     return np.asarray(2 * math.pi * np.hypot(qx, qy))

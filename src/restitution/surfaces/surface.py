@@ -20,16 +20,13 @@ Array = NDArray[np.float64]
 @typed
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """Heights on a grid, and their provenance.
-
-    The heights are copied if other code could still write to the array. Surfaces are compared and
-    hashed by identity; to compare values, compare `height` and `grid`.
+    """Heights on a grid, and their provenance; compared and hashed by identity.
 
     Attributes:
-        height: Heights (m), positive towards the other body, shape `grid.nodes`; read-only.
+        height: Heights (m), positive towards the other body, shape `grid.nodes`; read-only, copied
+            if other code could still write to the array.
         grid: Grid of the heights.
-        provenance: Texts and numbers (SI) that describe the origin of the heights; every result
-            stores them.
+        provenance: Texts and numbers (SI) on the origin of the heights; every result stores them.
 
     Raises:
         SurfaceError: The shape does not fit the grid, or a height is undefined.

@@ -1,9 +1,4 @@
-"""Texture and material ratio parameters after ISO 25178-2.
-
-Unlike the parameters of `describe`, most of these parameters are derived from the autocorrelation
-in all directions or from the material ratio curve. Clause numbers refer to ISO 25178-2:2012.
-Subtract tilt and form first (`level`).
-"""
+"""Texture and material ratio parameters after ISO 25178-2:2012, whose clause numbers are cited."""
 
 from __future__ import annotations
 
@@ -36,10 +31,7 @@ class MaterialRatio(NamedTuple):
 
 
 class HeightDensity(NamedTuple):
-    """Heights (m), measured from their mean, and their probability density (1/m).
-
-    `normal` is the density (1/m) of a normal distribution with the same Sq.
-    """
+    """Heights (m, from the mean height), their density (1/m), and that of a normal distribution."""
 
     height: Array
     density: Array
@@ -49,38 +41,29 @@ class HeightDensity(NamedTuple):
 def texture(surface: Surface) -> dict[str, float | None]:
     """Texture and material ratio parameters of `surface`, in SI units; None where undefined.
 
-    The decay lag of a direction is the lag at which the autocorrelation first falls to 0.2. Numbers
-    in brackets are clauses of the standard.
+    The decay lag of a direction is the lag at which the autocorrelation first falls to 0.2.
 
-    - `Sal_m`: autocorrelation length, the shortest decay lag of all directions (4.2.1)
-    - `Str`: texture aspect ratio, the shortest decay lag divided by the longest (4.2.2). It is near
-      1 without a lay and near 0 with a lay. It is None if the autocorrelation stays above 0.2 in
-      some direction up to half of the domain.
-    - `lay_deg`: direction (°) of the longest decay lag from the x axis, 0 to 180. If Str is small,
-      this is the direction of the lay.
-    - `Sdr`: developed interfacial area ratio, the area of triangles between nodes divided by the
-      area of their projection, minus 1 (4.3.2)
+    - `Sal_m`: autocorrelation length, the shortest decay lag (4.2.1)
+    - `Str`: texture aspect ratio, the shortest decay lag divided by the longest (4.2.2)
+    - `lay_deg`: direction (°) of the longest decay lag from the x axis, 0 to 180
+    - `Sdr`: developed interfacial area ratio, of triangles between nodes (4.3.2)
     - `Sk_m`, `Spk_m`, `Svk_m`: core height, reduced peak height and reduced dale height (5.2 to
       5.4, after ISO 13565-2)
-    - `Smr1`, `Smr2`: material ratios at the limits of the core: `Smr1` towards the peaks, `Smr2`
-      towards the dales (5.2 to 5.4)
+    - `Smr1`, `Smr2`: material ratios at the limits of the core towards peaks and dales (5.2 to 5.4)
     """
     decays = _decay_lags(autocorrelation(surface))
-    found = np.isfinite(decays)
+    defined = np.isfinite(decays)
     return {
-        "Sal_m": float(np.nanmin(decays)) if found.any() else None,
-        "Str": float(decays.min() / decays.max()) if found.all() else None,
-        "lay_deg": 180 * int(decays.argmax()) / _DIRECTIONS if found.all() else None,
+        "Sal_m": float(np.nanmin(decays)) if defined.any() else None,
+        "Str": float(decays.min() / decays.max()) if defined.all() else None,
+        "lay_deg": 180 * int(decays.argmax()) / _DIRECTIONS if defined.all() else None,
         "Sdr": _developed_area(surface),
         **_core(material_ratio(surface)),
     }
 
 
 def height_density(surface: Surface) -> HeightDensity:
-    """Probability density of the heights, and of a normal distribution with the same Sq.
-
-    Heights are measured from their mean. The normal density is set to 0 for a flat surface.
-    """
+    """Probability density of the heights, and that of a normal distribution with the same Sq."""
     z = surface.height - surface.height.mean()
     density, edges = np.histogram(1e9 * z, bins=_BINS, density=True)
     height = 0.5 * (edges[1:] + edges[:-1])
@@ -94,8 +77,8 @@ def height_density(surface: Surface) -> HeightDensity:
 def autocorrelation(surface: Surface) -> Autocorrelation:
     """Autocorrelation of the heights minus their mean, shape (nx, ny), lag zero at (nx//2, ny//2).
 
-    The autocorrelation of a periodic surface is periodic. Otherwise the value at each lag is the
-    mean over the pairs of pixels at this lag, so that the finite size of a scan does not bias it.
+    It is periodic for a periodic surface, else the mean over the pairs of pixels at each lag, so
+    that the finite size of a scan does not bias it.
     """
     from scipy.fft import irfft2, next_fast_len, rfft2
 
@@ -120,7 +103,7 @@ def material_ratio(surface: Surface, points: int = 1001) -> MaterialRatio:
 
 
 def _decay_lags(R: Autocorrelation) -> Array:
-    """Lag (m) at which the autocorrelation first falls to 0.2, in each direction; NaN if never."""
+    """Lag (m) of the first fall of the autocorrelation to 0.2 in each direction; NaN if never."""
     from scipy.ndimage import map_coordinates
 
     if min(R.values.shape) < 2:
@@ -143,7 +126,6 @@ def _decay_lags(R: Autocorrelation) -> Array:
 
 
 def _developed_area(surface: Surface) -> float:
-    """Sdr: the area of two triangles per cell divided by their projected area, minus 1."""
     z, (hx, hy) = surface.height, surface.grid.spacing
     if min(z.shape) < 2:
         return 0.0
@@ -154,7 +136,6 @@ def _developed_area(surface: Surface) -> float:
 
 
 def _core(curve: MaterialRatio) -> dict[str, float | None]:
-    """Parameters Sk, Spk, Svk, Smr1 and Smr2, from the secant of the flattest 40 % of `curve`."""
     from scipy.integrate import trapezoid
 
     ratio, height = curve

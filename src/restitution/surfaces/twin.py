@@ -1,23 +1,11 @@
-"""Statistical twin of a scan: another surface, of any size, with the statistics of the scan.
+"""Statistical twin of a scan: a random surface of any size with the statistics of the scan.
 
-The waves of a twin (`wave_spectrum`) first get random phases. Then heights and amplitudes are
-adjusted alternately (Schreiber and Schmitz 1996, Phys. Rev. Lett. 77, 635–638), because the
-skewness and kurtosis of the heights depend on the phases of all waves together. Phases and
-adjustment depend on the scan, the period of the twin and the seed, but not on the grid. So a grid
-with half the spacing gives the same surface with shorter waves added.
-
-To make the result independent of the grid, the waves are divided into bands by their wavelength.
-The target of each band is the distribution of heights that the scan has after all shorter waves are
-removed. The adjustment proceeds from long to short waves:
-
-* All waves of the first band are adjusted together, on the coarsest grid that resolves them. The
-  last step adjusts the amplitudes, so the amplitudes are exact.
-* Each further band adds waves down to half the shortest wavelength so far. Only the phases of the
-  added waves are adjusted.
-* The bands end where the remaining waves have about 1 % of the scan's mean square height. These
-  waves hardly affect the distribution of heights and keep their random phases.
-
-Bands whose waves are all too short for the grid are not computed.
+Waves with the amplitudes of `wave_spectrum` first get random phases; then heights and amplitudes
+are adjusted alternately (Schreiber and Schmitz 1996, Phys. Rev. Lett. 77, 635–638), band by band
+from long to short waves, so that a finer grid only adds waves. The target of a band is the
+distribution of heights that the scan has without shorter waves. In the first band all waves are
+adjusted; each further band halves the shortest wavelength, and only its phases are adjusted. The
+last waves, with 1 % of the mean square height, keep random phases.
 """
 
 from __future__ import annotations
@@ -61,18 +49,12 @@ _TABLE = 2**14  # number of steps of the table that maps heights (see `_with_hei
 
 
 def twin(scan: Surface, grid: Grid, seed: int) -> Surface:
-    """Make a twin of `scan` on `grid`: a random surface with the statistics of the scan.
+    """Make a twin of `scan` on `grid`, periodic over a multiple of `grid` as large as the scan.
 
-    The twin is periodic over `grid` or, if the scan is larger, over a multiple of `grid`. The sum
-    of all its waves has the Rq of the scan, and nearly the skewness and kurtosis of the scan. From
-    this sum, the waves that are too short for the cells of `grid` are left out.
-
-    The provenance describes the waves left out (`removed_…`) and contains the statistics of the
-    scan (`scan_…`). It also contains `spectrum_misfit`, the root mean square of the relative
-    difference between the spectra of twin and scan, in bands of a quarter octave. The spectrum of
-    the twin is averaged over at most `_PARTS` parts of the twin, each as large as the scan. A twin
-    smaller than the scan is compared as a whole. The weight of a band is the sum of two fractions:
-    its share of the mean square height and its share of the mean square slope.
+    All waves together have the Rq of the scan, and nearly its skewness and kurtosis; those too
+    short for the cells are then left out. `spectrum_misfit` in the provenance is the rms relative
+    difference of the spectra in bands of a quarter octave, weighted by their shares of mean square
+    height and slope.
 
     Raises `SurfaceError` for a scan that is flat or has fewer than 16 pixels along an axis, and for
     cells that are too large for any wave of the scan.
@@ -114,7 +96,6 @@ def _check(scan: Surface, grid: Grid) -> None:
 
 
 def _adjusted(spectrum: WaveSpectrum, scan: Surface, grid: Grid, seed: int) -> Modes:
-    """Return the waves of the twin that `grid` resolves, in the order of `rfft2` on `grid`."""
     modes: Modes = np.zeros((1, 1), dtype=np.complex128)
     most = 0, 0
     for cell in _bands(spectrum, scan):
@@ -128,10 +109,7 @@ def _adjusted(spectrum: WaveSpectrum, scan: Surface, grid: Grid, seed: int) -> M
 
 
 def _bands(spectrum: WaveSpectrum, scan: Surface) -> list[tuple[float, float]]:
-    """For each band of wavelengths, return the largest cell that resolves its waves.
-
-    A cell is given by its x and y edges (m). The band of the longest waves comes first.
-    """
+    """The largest cell (m) that resolves the waves of each band, from long to short waves."""
     most = (1 - _UNADJUSTED) * float(np.var(scan.height))
 
     def cell(level: int) -> tuple[float, float]:
@@ -156,11 +134,9 @@ def _band(
     known: Modes,
     kept: tuple[int, int],
 ) -> tuple[Modes, tuple[int, int]]:
-    """Adjust the phases of the waves that cells of size `cell` (m) resolve.
+    """Adjust the phases of the waves that cells of size `cell` (m) resolve, except those `known`.
 
-    The waves `known` were adjusted before and do not change. `kept` contains the largest number of
-    periods of these waves along x, and the largest number along y. Return all waves, and the same
-    two numbers for them.
+    Return all waves, and the largest numbers of their periods; `kept` are these of the known waves.
     """
     from scipy.fft import irfft2, rfft2
 
@@ -203,7 +179,6 @@ def _quantiles(ascending: Array) -> Array:
 
 
 def _between(table: Array, at: Array) -> Array:
-    """Interpolate `table` linearly at the fractional indices `at`."""
     before = np.minimum(at.astype(np.intp), table.size - 2)
     first = table[before]
     before += 1
@@ -211,7 +186,6 @@ def _between(table: Array, at: Array) -> Array:
 
 
 def _nodes(most: tuple[int, int]) -> tuple[int, int]:
-    """Return the smallest grid with a fast FFT that resolves `most` periods along x and y."""
     from scipy.fft import next_fast_len
 
     return (
@@ -221,7 +195,6 @@ def _nodes(most: tuple[int, int]) -> tuple[int, int]:
 
 
 def _copy(source: Modes, target: Modes, most: tuple[int, int]) -> None:
-    """Copy the waves with at most `most` periods along x and y from `source` into `target`."""
     M, N = most
     target[: M + 1, : N + 1] = source[: M + 1, : N + 1]
     if M:
@@ -229,10 +202,7 @@ def _copy(source: Modes, target: Modes, most: tuple[int, int]) -> None:
 
 
 def _heights(modes: Modes, nodes: tuple[int, int]) -> Array:
-    """Sum the waves `modes` to heights on a grid of `nodes`. Overwrites `modes`.
-
-    The phases are relative to the node (nx // 2, ny // 2), which is the origin of a `Grid`.
-    """
+    """Sum the waves `modes` (overwritten); phases are relative to the origin of a `Grid`."""
     from scipy.fft import irfft2
 
     number = np.fft.fftfreq(nodes[0], 1 / nodes[0]), np.arange(modes.shape[1])
@@ -287,8 +257,7 @@ def _provenance(
 def _misfit(made: Surface, scan: Surface) -> float:
     """Relative rms difference between the radial spectra of the twin `made` and of `scan`.
 
-    The spectrum of the twin is averaged over parts that are as large as the scan, or over the whole
-    twin if it is smaller than the scan. Only waves that both grids resolve are compared.
+    Only waves that both grids resolve are compared, in the mean over parts as large as the scan.
     """
     grid, pixel = made.grid, scan.grid.spacing
     nx, ny = (

@@ -1,16 +1,9 @@
-"""Wave amplitudes of a twin, which is a random surface with the statistics of a scan.
+"""Wave amplitudes of a twin, which depend on the scan and the period of the twin, not on the grid.
 
-The twin can be larger than the scan. Its amplitudes are computed in two steps:
-
-1. The scan's power spectrum C (`psd`) is interpolated linearly to the wave vectors of the twin.
-   Waves longer than the scan have not been measured and are left out.
-2. The result is multiplied by a + b/k², where k is the size of the scan divided by the wavelength.
-   The constants a and b are chosen so that height and slope have the mean squares of the scan. C
-   alone does not give these values, because the tapers in the estimate of C give the rim of the
-   scan less weight than the middle.
-
-Both steps depend on the scan and the period of the twin, but not on the grid. So the waves are the
-same for grids of any spacing.
+The scan's power spectrum C (`psd`) is interpolated linearly to the wave vectors of the twin; waves
+longer than the scan are left out. It is then multiplied by a + b/k², where k is the size of the
+scan divided by the wavelength, so that height and slope have the mean squares of the scan. C alone
+does not give these values, because the tapers give the rim of the scan less weight than the middle.
 """
 
 from __future__ import annotations
@@ -36,13 +29,10 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class WaveSpectrum:
-    """Mean square heights of the waves of a twin.
+    """Mean square heights of the waves of a twin with the edges `period` = (Px, Py), in metres.
 
-    The edges of the twin are `period` = (Px, Py), in metres. The wave (m, n), with integers m and
-    n, has the wave vector 2π(m/Px, n/Py). `density` is the power spectrum of the scan, multiplied
-    by a constant. Its values are the mean square heights (m²) of single waves of the twin, before
-    the factor a + b/k² is applied (see the top of this file). The zero wave vector is in the middle
-    of the array.
+    The wave (m, n) has the wave vector 2π(m/Px, n/Py). `density` is the mean square height (m²) of
+    single waves before the factor a + b/k²; the zero wave vector is in the middle.
     """
 
     density: Array
@@ -58,10 +48,7 @@ class WaveSpectrum:
         return np.maximum(C * (self.flat + self.steep / np.maximum(k2, 1.0)), 0.0)
 
     def _raw(self, m: NDArray[np.int64], n: NDArray[np.int64]) -> tuple[Array, Array]:
-        """Interpolate `density` at the waves (m, n), without the factor a + b/k².
-
-        Also return k², where k is the size of the scan divided by the wavelength.
-        """
+        """`density` at the waves (m, n), without the factor a + b/k², and k²."""
         from scipy.ndimage import map_coordinates
 
         kx, ky = m / self.waves[0], n / self.waves[1]
@@ -73,10 +60,7 @@ class WaveSpectrum:
         return C, k2
 
     def numbers(self, spacing: tuple[float, float]) -> tuple[int, int]:
-        """Largest m and n of the resolved waves (m, n).
-
-        These are the waves that both the scan and cells of size `spacing` resolve.
-        """
+        """Largest m and n of the waves that the scan and cells of size `spacing` resolve."""
         most = [
             math.ceil(0.5 * edge / max(h, pixel) * (1 - _ROUNDING)) - 1
             for edge, h, pixel in zip(self.period, spacing, self.pixel, strict=True)
@@ -84,11 +68,7 @@ class WaveSpectrum:
         return most[0], most[1]
 
     def modes(self, most: tuple[int, int], nodes: tuple[int, int], seed: int) -> Modes:
-        """Waves (m, n) with random phases, in the order of `rfft2`.
-
-        `most` contains the largest |m| and n. `nodes` is the shape of the grid of the FFT. The
-        normalisation is "forward": heights are the sum of the modes.
-        """
+        """Waves up to `most` with random phases, in the order of `rfft2` (norm "forward")."""
         M, N = most
         full: Modes = np.zeros((nodes[0], nodes[1] // 2 + 1), dtype=np.complex128)
         n = np.arange(N + 1)
@@ -101,7 +81,7 @@ class WaveSpectrum:
 
 
 def spectrum_of(scan: Surface, period: tuple[float, float]) -> WaveSpectrum:
-    """Compute the spectrum of a twin of `scan`; `period` contains the edges (m) of the twin."""
+    """Spectrum of a twin of `scan`; `period` contains the edges (m) of the twin."""
     C = np.fft.fftshift(power_spectral_density(scan))
     waves = tuple(p / s for p, s in zip(period, scan.grid.size, strict=True))
     C *= 1 / (scan.grid.size[0] * scan.grid.size[1] * waves[0] * waves[1])
@@ -119,16 +99,10 @@ def spectrum_of(scan: Surface, period: tuple[float, float]) -> WaveSpectrum:
 
 
 def _moments(spectrum: WaveSpectrum) -> Array:
-    """Mean square height (row 1) and mean square slope (row 2) of two surfaces, shape (2, 2).
+    """Mean square height (row 1) and slope (row 2), with the factors 1 and 1/k² (columns).
 
-    The waves of the first surface (column 1) have the mean square heights P of
-    `WaveSpectrum.power`. The waves of the second surface (column 2) have the mean square heights
-    P/k², where k is the size of the scan divided by the wavelength. Slopes are differences between
-    neighbouring pixels, as in `rms_slope`.
-
-    Long waves are summed one by one, over the wave vectors of the twin. Short waves are summed over
-    the wave vectors of the scan, which are fewer: the scan is not larger than the period of the
-    twin.
+    Slopes are differences between neighbouring pixels. Long waves are summed over the wave vectors
+    of the twin, short waves over those of the scan, which are fewer.
     """
     wx, wy = spectrum.waves
     (mx, my), (hx, hy) = spectrum.density.shape, spectrum.pixel

@@ -20,7 +20,7 @@ from .law import impact_energy, restitution_of_work
 
 @dataclass(frozen=True, eq=False)
 class EEPA:
-    """Power-law springs with adhesion; with the indentation δ_max = d:
+    """Power-law springs with adhesion, unloaded from the indentation d::
 
         loading     F = f₀ + k₁δⁿ
         unloading   F = f₀ + k₂(δⁿ − δ_pⁿ),  δ_p = (1 − k₁/k₂)^{1/n} d

@@ -20,7 +20,7 @@ class JacksonGreen:
     """First loading of an elastic, perfectly plastic sphere against a rigid frictionless flat.
 
     With ω* = δ/δ_y of `FirstYield` at the peak pressure CY, the force P and contact area A are
-    Hertz's up to ω* = 1.9; beyond it
+    Hertz's up to ω* = 1.9; beyond it::
 
         P/P_c = exp(−ω*^{5/12}/4) ω*^{3/2} + 4H_G/(CY) [1 − exp(−ω*^{5/9}/25)] ω*
         A/A_c = ω* (ω*/1.9)^B,  B = 0.14 exp(23 Y/E*),  H_G/Y = 2.84 [1 − exp(−0.82 (a/R*)^{−0.7})]

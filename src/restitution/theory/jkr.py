@@ -51,7 +51,7 @@ class Kendall(PositiveFields):
 class JKR(PositiveFields):
     """Elastic spheres with adhesion: `Hertz` minus the adhering punch `Kendall` of the same radius.
 
-    With F_c = 3/2 πwR*, a_b = (πwR*²/8E*)^{1/3}, s = (a/a_b)^½ and U = E*a_b⁵/R*²,
+    With F_c = 3/2 πwR*, a_b = (πwR*²/8E*)^{1/3}, s = (a/a_b)^½ and U = E*a_b⁵/R*²::
 
         F = 4E*a³/(3R*) − (8πE*wa³)^½ = (s⁶ − 6s³) F_c/9,   U_T = U_el − wπa²
         δ = a²/R* − (2πwa/E*)^½ = (s⁴ − 4s) a_b²/R*,   U_el/U = 8/15 s¹⁰ − 16/3 s⁷ + 16 s⁴

@@ -20,7 +20,9 @@ from .law import restitution_of_work
 
 @dataclass(frozen=True, eq=False)
 class Luding:
-    """Linear springs with adhesion; with δ_max = d, δ* = k̂₂/(k̂₂ − k₁) φ_f 2R* and δ₀* = φ_f 2R*:
+    """Linear springs with adhesion, unloaded from the indentation d.
+
+    With δ* = k̂₂/(k̂₂ − k₁) φ_f 2R* and δ₀* = φ_f 2R*::
 
         loading     F = k₁δ up to δ*, then F = k̂₂(δ − δ₀*)
         unloading   F = k₂(δ − δ₀),  k₂ = k₁ + (k̂₂ − k₁) min(d/δ*, 1),  δ₀ = min((1 − k₁/k₂) d, δ₀*)

@@ -21,7 +21,7 @@ class MaugisDugdale(PositiveFields):
     """Elastic spheres with a constant attraction σ₀ where the gap is below w/σ₀.
 
     With λ = 2σ₀ (R*/(πwK²))^{1/3}, K = 4/3 E*, ā = a (K/(πwR*²))^{1/3}, F̄ = F/(πwR*) and the outer
-    radius ma of the attracting ring,
+    radius ma of the attracting ring::
 
         1 = λā²/2 [(m² − 1)^½ + (m² − 2) arcsec m] + 4λ²ā/3 [(m² − 1)^½ arcsec m − m + 1]
         F̄ = ā³ − λā² [(m² − 1)^½ + m² arcsec m]

@@ -19,7 +19,7 @@ class ThorntonNing(PositiveFields):
 
     With x = δ/δ_y and f = F/F_y, first loading is f = x^{3/2} up to x = 1, then the tangent
     f = (3x − 1)/2. Unloading is Hertz with the radius R_p = R* x^{3/2}/f and a residual indentation
-    δ_p: F = 4/3 E* R_p^½ (δ − δ_p)^{3/2}. Above the yield velocity V_y, with q = V_y/V,
+    δ_p: F = 4/3 E* R_p^½ (δ − δ_p)^{3/2}. Above the yield velocity V_y, with q = V_y/V::
 
         e = (6√3/5)^½ (1 − q²/6)^½ [q/(q + 2(6/5 − q²/5)^½)]^¼.
 

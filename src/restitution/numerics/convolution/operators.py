@@ -2,10 +2,9 @@
 
     u[i, j] = Σ_kl  K[|i − k|, |j − l|] p[k, l].
 
-Along an axis of n nodes, zero padding to any size ≥ 2n − 1 makes the circular convolution equal to
-the linear one (Liu, Wang and Liu 2000, Wear 243, 101–111, "DC-FFT"). The kernel is even along both
-axes, so its spectrum is real, and the DCT-I of one quadrant of the kernel gives the one quadrant of
-the spectrum that is stored. A periodic kernel is given by its spectrum (`symbol`).
+With n nodes along an axis, zero padding to any size ≥ 2n − 1 makes the circular convolution equal
+to the linear one (Liu, Wang and Liu 2000, Wear 243, 101–111, "DC-FFT"). The spectrum of an even
+kernel is real; only one quadrant is stored.
 """
 
 from __future__ import annotations
@@ -41,8 +40,7 @@ def fast_size(minimum: int) -> int:
 class _Spectral:
     """Multiplication of the Fourier modes of a zero-padded array by a real, even spectrum.
 
-    `count` is the number of multiplications so far. A lock guards the workspace; threads compute in
-    parallel with copies from `with_own_workspace`.
+    `count` counts multiplications. A lock guards the workspace, which is kept.
     """
 
     def __init__(self, shape: tuple[int, int], periods: tuple[int, int], device: Device) -> None:
@@ -118,10 +116,9 @@ class PeriodicConvolution(Convolution):
 
 
 class SpectralFilter(_Spectral):
-    """Multiplication by a real, even spectrum in Fourier space: a cheap approximate convolution.
+    """Multiplication by a real, even spectrum: a cheap, periodic, approximate convolution.
 
-    Arrays are padded only to the next fast size, so the filter is periodic. Single precision is
-    accurate enough for a preconditioner.
+    Single precision is accurate enough for a preconditioner.
     """
 
     def __init__(

@@ -127,5 +127,4 @@ def _is_outside(p: Array, bounds: Bounds) -> bool:
 
 
 def _is_unbounded(upper: Bound) -> bool:
-    """Whether the upper bound is the number infinity; no comparison with p is then needed."""
     return isinstance(upper, float) and upper == np.inf

@@ -1,14 +1,8 @@
 """Minimisation of a convex quadratic within bounds: the solver of most contacts.
 
-    minimise  ½ pᵀK p − pᵀb   subject to   lower ≤ p ≤ upper
-
-K is symmetric positive definite and known only through its product with an array. With the
-gradient g = K p − b, the solution satisfies
-
-    g ≥ 0 where p = lower,   g = 0 between the bounds,   g ≤ 0 where p = upper.
-
-The largest violation of these conditions measures the error of a solution. The caller decides what
-the bounds mean (contact, yield, friction, JKR adhesion).
+K is symmetric positive definite and known only through its product with an array. With the gradient
+g = K p − b, the solution satisfies g ≥ 0 where p = lower, g = 0 between the bounds and g ≤ 0 where
+p = upper; the largest violation measures the error of a solution.
 """
 
 from __future__ import annotations
@@ -107,26 +101,20 @@ def minimise_quadratic(
     """Solve `problem` by projected, preconditioned conjugate gradients (Polak–Ribière+).
 
     The search on the free nodes follows Polonsky and Keer (1999, Wear 231, 206–219), with an upper
-    bound and four changes (docs/method.md):
+    bound and four changes (docs/method.md): a direction is truncated at a trial length before the
+    one product with K, then scaled to its optimal length; it is not reset when nodes reach or leave
+    a bound, but β is limited to that of Fletcher and Reeves (Gilbert and Nocedal 1992, SIAM J.
+    Optim. 2, 21–42); an ascent direction, from an unsymmetric approximate inverse, is reversed; and
+    a solve that stalls takes a step along the gradient itself.
 
-    1. Each direction is truncated at a trial length before the product with K and then scaled to
-    its
-       optimal length within the bounds. So an iteration takes one product, and no step raises the
-       energy.
-    2. The direction is not reset when nodes reach or leave a bound: 0 ≤ β ≤ β of Fletcher and
-    Reeves
-       (Gilbert and Nocedal 1992, SIAM J. Optim. 2, 21–42), times the change of the trial length.
-    3. The approximate inverse can be unsymmetric; an ascent direction is reversed.
-    4. If the preconditioned gradient makes no progress, one step follows the gradient itself.
-
-    `start` is the initial point, shape (nx, ny), and is overwritten. `precondition` is an
-    approximate inverse of K. `tolerance` limits the violation of the optimality conditions, in the
-    units of `b`: the largest magnitude of the projected gradient or, with `mean_violation`, the
-    root mean square of its nonzero values. `K_start`, if given, is the product of `K_single` and a
-    `start` within the bounds, and is overwritten. With `accept_estimated_gradient`, the first
-    gradient is computed with `K_single`, and the updated gradient is final if the violation plus
-    its estimated rounding error is within `tolerance`; without, the final gradient is computed with
-    K. If the solve does not converge, `converged` of the result is False.
+    `start`, shape (nx, ny), is overwritten. `precondition` is an approximate inverse of K.
+    `tolerance` limits the violation, in the units of `b`: the largest magnitude of the projected
+    gradient or, with `mean_violation`, the root mean square of its nonzero values. `K_start`, if
+    given, is the product of `K_single` and a `start` within the bounds, and is overwritten. With
+    `accept_estimated_gradient`, the first gradient is computed with `K_single`, and the updated
+    gradient is final if the violation plus its estimated rounding error is within `tolerance`; else
+    the final gradient is computed with K. If the solve does not converge, `converged` of the result
+    is False.
     """
     # Floating-point type of the direction d, of the arrays r and z (from which d is computed), and
     # of the product K d.
@@ -198,7 +186,6 @@ def _largest(largest: float, r: Array) -> float:
 
 
 def _root_mean_square(largest: float, r: Array) -> float:
-    """Root mean square of the nonzero values of `r`, or its largest magnitude if not positive."""
     if not largest > 0:
         return largest
     return math.sqrt(dot_products(r, r, r)[0] / np.count_nonzero(r))

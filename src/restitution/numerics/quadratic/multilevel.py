@@ -133,11 +133,10 @@ def solve_multilevel(
 def mean_damped_preconditioner(inverse: Operator, p: Array, b: Array, upper: Bound) -> Operator:
     """Return an operator that damps the local means of its argument and then applies `inverse`.
 
-    A residual that is constant on the contact nodes drops to zero at the contact edge. The inverse
-    of a smoothing operator amplifies the short waves of this drop, more so on finer grids (McLean
-    and Steinbach 1999, Adv. Comput. Math. 11, 271–286), by a factor of up to 30 on rough contacts.
-    Without damping, conjugate gradients must correct this error again whenever nodes reach or leave
-    a bound. The damping factor follows from the guess `p`, for which K p = b on the free nodes.
+    The inverse of a smoothing operator amplifies the short waves at the edge of a residual that is
+    constant on the contact nodes (McLean and Steinbach 1999, Adv. Comput. Math. 11, 271–286), by a
+    factor of up to 30 on rough contacts. The damping follows from the guess `p`, for which K p = b
+    on the free nodes.
     """
     factor = mean_damping(inverse, p, b, upper)
     if factor == 1.0:

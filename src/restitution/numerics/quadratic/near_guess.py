@@ -1,12 +1,9 @@
 """Approximate minimisation without upper bound, on a window around a guess from coarser grids.
 
-On a rough surface, far too many nodes of the coarser grid are in contact, because means over 2 × 2
-nodes hide the roughness between the nodes; but the mean pressure is nearly right. So short waves
-are added to the guess, negative pressures are set to zero, and the positive pressures are lowered
-until their local means are nearly the same as on the coarser grid. The preconditioner then keeps
-the local means nearly constant. On separate contact patches, the approximate inverse alone would
-convert short waves of the residual to a change of the mean pressure, which later iterations would
-have to undo.
+Means over 2 × 2 nodes hide the roughness between the nodes, so far too many nodes of a coarser grid
+are in contact, but the mean pressure is nearly right. The guess gets short waves and keeps its
+local means; the preconditioner then keeps them nearly constant, which on separate patches the
+approximate inverse alone would not.
 """
 
 from __future__ import annotations

@@ -1,9 +1,6 @@
-"""Read the file formats of instruments with the SurfaceTopography package.
+"""Read the file formats of instruments with the SurfaceTopography package, imported on first use.
 
-SurfaceTopography and this package both index heights `[i, j]` along x and y. SurfaceTopography's y
-axis points down the picture, so `imshow(heights.T)` shows the scan as the instrument does. The
-physical size of a scan is the number of pixels times the pixel size. SurfaceTopography is optional
-and imported on first use.
+Its y axis points down the picture. The size of a scan is the number of pixels times the pixel size.
 """
 
 from __future__ import annotations
@@ -49,10 +46,9 @@ def read_instrument(
 ) -> Scan:
     """Read the height channel with the number `channel`; None selects the default height channel.
 
-    `content` replaces the bytes of the file, and `form` is then the name of their format.
-
-    Raises `NoReadersError` if the readers are missing or too old, `UnrecognisedError` if no reader
-    can open the file, and `SurfaceError` if the channel does not exist or is not a height map.
+    `content`, in the format `form`, replaces the bytes of the file. Raises `NoReadersError` if the
+    readers are missing or too old, `UnrecognisedError` if no reader can open the file, and
+    `SurfaceError` if the channel does not exist or is not a height map.
     """
     check_archive(path)
     with _quiet():
@@ -74,11 +70,7 @@ def read_instrument(
 
 
 def _open(package: Any, path: Path, content: bytes | None, form: str | None) -> Any:
-    """Open a file with the reader of its suffix, or else with the first that finds a channel.
-
-    Some readers accept files of other formats and find nothing in them: that of MATLAB accepts
-    about half of all NanoFocus files.
-    """
+    """Some readers accept other formats and find nothing: MATLAB's half of all NanoFocus files."""
     if content is not None:
         return package.open_topography(io.BytesIO(content), format=form)
     empty = None
@@ -99,9 +91,9 @@ def _formats(package: Any, suffix: str) -> Iterator[str | None]:
     """Yield the formats of the suffix, None for "detect it", and then all formats."""
     readers = getattr(getattr(package, "IO", None), "readers", [])
     if suffix not in _TEXT:
-        yield from (each.format() for each in readers if suffix in each.file_extensions())
+        yield from (reader.format() for reader in readers if suffix in reader.file_extensions())
     yield None
-    yield from (each.format() for each in readers)
+    yield from (reader.format() for reader in readers)
 
 
 def check_archive(path: Path) -> None:
@@ -110,7 +102,7 @@ def check_archive(path: Path) -> None:
         return
     try:
         with zipfile.ZipFile(path) as archive:
-            size = sum(each.file_size for each in archive.infolist())
+            size = sum(member.file_size for member in archive.infolist())
     except (zipfile.BadZipFile, ValueError, NotImplementedError):
         return  # a damaged archive; the reader of its format raises the error
     if size > _LARGEST_UNPACKED:
@@ -121,7 +113,6 @@ def check_archive(path: Path) -> None:
 
 
 def _import_readers(path: Path) -> Any:
-    """Import and return SurfaceTopography."""
     try:
         import SurfaceTopography
     except ImportError as error:
@@ -140,7 +131,7 @@ def _import_readers(path: Path) -> Any:
 
 def _read_channel(path: Path, reader: Any, channel: int | None) -> Scan:
     channels = list(reader.channels)
-    heights = [each for each in channels if _is_height(each)]
+    heights = [c for c in channels if _is_height(c)]
     index = _default_index(reader, channels) if channel is None else channel
     if not 0 <= index < len(channels):
         if not channels:
@@ -150,7 +141,7 @@ def _read_channel(path: Path, reader: Any, channel: int | None) -> Scan:
         )
     chosen = channels[index]
     if not (_is_height(chosen) or _lacks_unit(chosen)):
-        if channels and all(each.dim == 1 for each in channels):
+        if channels and all(c.dim == 1 for c in channels):
             raise LineScanError(path, int(chosen.nb_grid_pts[0]))
         if channel is None:
             raise _no_height_map(path, channels)
@@ -159,13 +150,12 @@ def _read_channel(path: Path, reader: Any, channel: int | None) -> Scan:
             "converted to metres; "
             + (f"choose a height channel: {_list(heights, channels)}" if heights else _EXPORT)
         )
-    offered = [each for each in heights if each is not chosen and _is_surface(each)]
+    offered = [c for c in heights if c is not chosen and _is_surface(c)]
     others = {"other_height_channels": _list(offered, channels)} if offered else {}
     return _scan(chosen, type(reader).__name__, {"channel": index, **others})
 
 
 def _scan(chosen: Any, reader: str, channel: dict[str, str | float]) -> Scan:
-    """The heights and the size of a channel."""
     # SurfaceTopography requires a physical size even if the file contains none. The number of
     # pixels is then passed as a placeholder, and the scan is returned without a size.
     sized = chosen.physical_sizes is not None
@@ -196,7 +186,7 @@ def _scan(chosen: Any, reader: str, channel: dict[str, str | float]) -> Scan:
 def _no_height_map(path: Path, channels: list[Any]) -> SurfaceError:
     if not channels and (known := identified(path)) is not None:
         return SurfaceError(f"{path}: {known}")
-    said = ", ".join(f"{n} {_described(each)}" for n, each in enumerate(channels))
+    said = ", ".join(f"{n} {_described(c)}" for n, c in enumerate(channels))
     none = "none; perhaps the file is empty, or holds force curves"
     return SurfaceError(f"{path}: contains no height map (channels: {said or none}); {_EXPORT}")
 
@@ -206,7 +196,6 @@ def _described(channel: Any) -> str:
 
 
 def _default_index(reader: Any, channels: list[Any]) -> int:
-    """Index of the default channel, or of the first that is more likely to be the height map."""
     if not channels:
         return 0
     default = int(reader.default_channel.index)
@@ -243,11 +232,7 @@ def _lacks_unit(channel: Any) -> bool:
 
 
 def _value_unit(channel: Any) -> str | None:
-    """Unit of the values of a channel; None if unknown.
-
-    `channel.unit` is the lateral unit, or a pair (lateral unit, value unit) if the reader could not
-    convert the values to the lateral unit.
-    """
+    """`channel.unit` is a pair (lateral, value) if the reader could not convert the values."""
     unit: str | None = channel.unit[1] if isinstance(channel.unit, tuple) else channel.data_unit
     return unit
 
@@ -261,11 +246,6 @@ def _list(some: list[Any], channels: list[Any]) -> str:
 
 
 def _why_unreadable(error: Exception, path: Path, form: str | None) -> str:
-    """Describe in words why SurfaceTopography cannot open a file, and what to do.
-
-    If the first bytes name another kind of file, this is the reason. Otherwise it is the message of
-    the only reader tried (that of `form`), or of the reader that is named after the suffix.
-    """
     if form is None and (known := identified(path)) is not None:
         return known
     named_after_suffix = rf"tried {re.escape(path.suffix.removeprefix('.'))}reader:\s*(.+)"
@@ -286,7 +266,6 @@ def _first_line(error: Exception) -> str:
 
 @contextlib.contextmanager
 def _quiet() -> Iterator[None]:
-    """Suppress output and warnings of third-party readers."""
     with (
         warnings.catch_warnings(),
         contextlib.redirect_stdout(io.StringIO()),

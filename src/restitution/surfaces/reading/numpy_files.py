@@ -18,11 +18,10 @@ SAVE_AS_NUMPY = "save the heights in metres as a 2-D array with numpy.save"
 
 
 def read_numpy(path: Path) -> Scan:
-    """Read a height map (m) from a NumPy file.
+    """Read a height map (m): the only array of the file, or `height` in a `.npz` file.
 
-    A `.npy` file contains one 2-D array. In a `.npz` file, the height map is the array `height`, or
-    the only array. A `.npz` file may also contain `size`, the two edge lengths (m). Raises
-    `SurfaceError` for other content, including pickled objects, which are not loaded.
+    A `.npz` file may also contain `size`, the two edge lengths (m). Raises `SurfaceError` for other
+    content, including pickled objects, which are not loaded.
     """
     array, size, details = _load_arrays(path)
     if array.ndim != 2 or min(array.shape) < 2:
@@ -85,7 +84,6 @@ def _size_entry(path: Path, entry: NDArray[np.generic]) -> tuple[float, float]:
 
 
 def _check_headers(path: Path) -> None:
-    """Raise `SurfaceError` if a header states more pixels than a scan may have."""
     if path.suffix.lower() == ".npy":
         with path.open("rb") as stream:
             _check_header(path, stream)

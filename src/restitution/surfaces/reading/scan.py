@@ -38,7 +38,7 @@ _UTF16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 @dataclass(frozen=True)
 class Scan:
-    """Content of a topography file: the heights, the size of the scan, and further details.
+    """Content of a topography file.
 
     Attributes:
         height: Heights (m), or numbers in an unknown unit if `unit` is None; shape (nx, ny); NaN

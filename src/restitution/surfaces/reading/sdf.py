@@ -1,8 +1,8 @@
 """Read surface data files (.sdf): ISO 25178-71 (versions 1.0 and 2.0) and the older BCR form.
 
-The lowest number of a data type marks an undefined point. In the BCR form, whose types may be
-unsigned, the highest number marks it. SurfaceTopography 1.27.1 takes the marks of `float`, `double`
-and 8-bit types for heights, and does not know the BCR form and version 2.0.
+The lowest number of a data type marks an undefined point; in the BCR form, whose types may be
+unsigned, the highest. SurfaceTopography 1.27.1 takes the marks of `float`, `double` and 8-bit types
+for heights, and does not know the BCR form and version 2.0.
 """
 
 from __future__ import annotations
@@ -51,7 +51,6 @@ def read_sdf(path: Path) -> Scan:
 
 
 def _header(raw: bytes) -> tuple[dict[str, float], bytes]:
-    """The numbers of the header, and the part of the file after it."""
     if raw[:1] == b"a":
         head, star, body = raw[8:].partition(b"*")
         if not star:

@@ -1,8 +1,4 @@
-"""Name a file by its first bytes, if no reader here knows its format.
-
-The table is not complete: it contains what people have beside scans, and formats of microscopes
-that Gwyddion reads and SurfaceTopography does not.
-"""
+"""Name a file by its first bytes, if no reader here knows it: what people have beside scans."""
 
 from __future__ import annotations
 

@@ -26,8 +26,6 @@ _PICTURES = (3, 10, 12)  # binary, intensity and colour images
 
 @dataclass(frozen=True)
 class _Part:
-    """One surface of a file, with uncompressed heights."""
-
     content: bytes
     kind: int
     name: str
@@ -86,7 +84,6 @@ def _refuse(path: Path, number: int, parts: list[_Part], names: str) -> None:
 
 
 def _parts(path: Path) -> list[_Part] | None:
-    """Split the file; None if its first header is incomplete."""
     raw, at = path.read_bytes(), 0
     parts: list[_Part] = []
     while raw[at : at + 12] in (PLAIN, COMPRESSED) and len(raw) >= at + _HEADER:

@@ -1,9 +1,4 @@
-"""Read height matrices from plain text.
-
-Each line of the file is a scan line: x runs along a line, and y from line to line, as in files of
-Gwyddion, SurfaceTopography and instruments. The array of heights is transposed, so that it is
-indexed `[i, j]` along x and y, as everywhere in this package.
-"""
+"""Read height matrices from plain text; x runs along a line of the file, y from line to line."""
 
 from __future__ import annotations
 
@@ -48,15 +43,12 @@ class NotAMatrixError(SurfaceError):
 def read_text(path: Path) -> Scan:
     """Read a matrix of heights (m), separated by white space, commas or semicolons.
 
-    Lines that start with # are comments. `# Width:` and `# Height:` give the size of the scan, and
-    `# Value units:` the unit of the heights. Keys such as `# nx:`, `# ny:` and `# Pixels:` give the
-    number of values per line and the number of lines. An empty field, `nan` or `bad` marks an
-    undefined pixel. If fields are separated by semicolons, or by white space around numbers with
-    one comma each, the comma is the decimal sign. A first line and a first column that are axes are
-    left out.
-
-    Raises `NotAMatrixError` if the content is not such a matrix but another reader may understand
-    it, and `SurfaceError` for a matrix that is damaged or does not contain heights.
+    Comments start with #; `# Width:`, `# Height:`, `# Value units:`, `# nx:`, `# ny:`, `# Pixels:`
+    and the like are checked. An empty field, `nan` or `bad` marks an undefined pixel. With
+    semicolons, or white space around numbers with one comma each, the comma is the decimal sign.
+    Axes in the first line and column are left out. Raises `NotAMatrixError` where another reader
+    may understand the content, and `SurfaceError` for a matrix that is damaged or does not contain
+    heights.
     """
     lines = [line.strip() for line in decode(path.read_bytes()).splitlines()]
     data = [(n, line) for n, line in enumerate(lines, 1) if line and not line.startswith("#")]
@@ -96,12 +88,11 @@ def read_text(path: Path) -> Scan:
 
 
 def _parse_rows(path: Path, data: list[tuple[int, str]], *, plain: bool) -> list[list[float]]:
-    """Parse all lines. Raise `SurfaceError` for damaged lines.
+    """Parse all lines. Raise `SurfaceError` for damaged lines, `NotAMatrixError` for other text.
 
-    A line of text after the first scan line is damage, because other readers would silently skip
-    it. Above the first scan line, a line of text is damage in two cases: the comments show that the
-    file is a matrix (`plain`), or the line holds at least half as many numbers as a scan line. Any
-    other text above the first scan line raises `NotAMatrixError`.
+    Text after the first scan line is damage: other readers would silently skip it. Above, it is
+    damage if the comments show a matrix (`plain`) or the line holds half as many numbers as a scan
+    line.
     """
     rows: list[list[float]] = []  # a line of text becomes an empty row
     first: NotAMatrixError | None = None
@@ -131,7 +122,6 @@ def _damaged(path: Path, number: int, line: str, usual: int) -> SurfaceError:
 
 
 def _is_nearly_a_row(path: Path, line: str, width: int) -> bool:
-    """Whether `line` holds at least half as many numbers as a scan line of `width` values."""
     numbers = 0
     for text in line.replace(";", " ").replace(",", " ").split():
         with suppress(NotAMatrixError):
@@ -186,19 +176,15 @@ def _parse_field(path: Path, number: int, text: str) -> float:
 def _read_header(
     path: Path, comments: list[str]
 ) -> tuple[tuple[float | None, float | None], float, dict[str, str | float], _Counts]:
-    """Read the header lines.
-
-    Returns the edge lengths (m), the factor that converts heights to metres, and details for the
-    provenance. Also returns the number of values per line and the number of lines, if stated.
-    """
+    """Edge lengths (m), metres per value, provenance, and counts of values and lines."""
     sides: dict[str, float] = {}
     metres_per_value = 1.0
     details: dict[str, str | float] = {}
     counts: _Counts = {}
     for comment in comments:
         key, value = _statement(comment)
-        if found := _counts(key, value):
-            counts.update(found)
+        if stated := _counts(key, value):
+            counts.update(stated)
             continue
         quantity = _QUANTITY.fullmatch(value) if len(value) <= _LONGEST else None
         number, unit = (float(quantity["number"]), quantity["unit"]) if quantity else (1.0, value)
@@ -228,16 +214,11 @@ def _read_header(
 
 
 def _statement(comment: str) -> tuple[str, str]:
-    """Split `# key: value` or `# key = value` into key (lower case) and value.
-
-    For any other comment, return two empty texts.
-    """
     entry = _STATEMENT.fullmatch(comment)
     return (entry["key"].strip().lower(), entry["value"].strip()) if entry else ("", "")
 
 
 def _counts(key: str, value: str) -> _Counts:
-    """Read the number of values per line and the number of lines, if a header entry states them."""
     if key in _COLUMNS | _LINES and value.isdecimal() and len(value) < 10:
         return {"values" if key in _COLUMNS else "lines": int(value)}
     if key in ("pixels", "resolution", "shape") and (both := _BOTH.fullmatch(value)):
@@ -245,29 +226,25 @@ def _counts(key: str, value: str) -> _Counts:
     return {}
 
 
-def _check_counts(path: Path, stated: _Counts, found: tuple[int, int]) -> None:
-    for what, there in zip(("values", "lines"), found, strict=True):
+def _check_counts(path: Path, stated: _Counts, read: tuple[int, int]) -> None:
+    for what, there in zip(("values", "lines"), read, strict=True):
         if stated.get(what, there) != there:
             raise SurfaceError(
-                f"{path}: its header states {stated[what]} {what}, but the file has {found[1]} "
-                f"lines of {found[0]} values, so a part is missing; export it again"
+                f"{path}: its header states {stated[what]} {what}, but the file has {read[1]} "
+                f"lines of {read[0]} values, so a part is missing; export it again"
             )
 
 
 @dataclass(frozen=True)
 class _Axes:
-    """The steps of the axes of x and y, in an unknown unit."""
-
     x: float
     y: float
 
     @property
     def steps(self) -> str:
-        """The steps in words."""
         return f"steps of {self.x:.6g} along x and {self.y:.6g} along y, in a unit not stated"
 
     def notice(self, path: Path) -> str:
-        """What was done with the axes."""
         return (
             f"{path}: the first line and the first column are taken for the axes of x and y "
             f"({self.steps}) and left out of the heights"
@@ -277,8 +254,7 @@ class _Axes:
 def _axes_of(values: Array) -> _Axes | None:
     """The axes of a matrix of lines; None if its first line and column are heights.
 
-    Both must have even steps, and their neighbours, the first line and column of heights, must not
-    both have them: in a plane, all lines and columns have even steps.
+    In a plane, all lines and columns have even steps; so those beside the axes must not have them.
     """
     if min(values.shape) <= _LEAST_AXIS:
         return None

@@ -1,9 +1,9 @@
 """Read text files of Wyko interferometers (.asc).
 
 Heights are in waves, `value * Wavelength / Mult`, or in nm if the second flag of the first line is
-1. Each line of a block is one x; y runs along the line from the bottom of the picture upwards, as
-in the binary files (.opd). SurfaceTopography 1.27.1 exchanges x and y, reads `Mult` only if its
-type is 7, and joins the lines of several blocks.
+1. Each line of a block is one x; y runs upwards along it, as in the binary files (.opd).
+SurfaceTopography 1.27.1 exchanges x and y, reads `Mult` only if its type is 7, and joins the lines
+of several blocks.
 """
 
 from __future__ import annotations
@@ -50,7 +50,6 @@ def read_wyko(path: Path) -> Scan:
 
 
 def _header(lines: Iterator[str]) -> tuple[dict[str, float], str]:
-    """The numbers of the header, and the name of the first block of heights."""
     header: dict[str, float] = {}
     for line in lines:
         key, *fields = (field.strip() for field in line.split("\t"))
