@@ -80,11 +80,10 @@ def _run(
     start: Callable[..., dict[str, Any]],
     curves: Callable[[Case], int],
 ) -> dict[str, Any]:
-    """Compute the case in the file `case`; store, print and draw the results; return the summary.
+    """Compute, store, print and draw a case, or the depths computed before an interruption.
 
-    `start` computes the case. It has the parameters of `run_realisations` and returns the summary.
-    `curves` returns the number of curves of a case, for the progress bar. If a run is interrupted
-    or fails, the depths computed so far are stored and drawn.
+    `start` has the parameters of `run_realisations`. `curves` returns the number of curves of a
+    case, for the progress bar.
     """
     read, text = read_case(case)
     with on_device(device.value), locked(out):
@@ -164,11 +163,7 @@ def _elastic_error(rows: list[dict[str, float]]) -> str:
 
 
 def _advice(case: Case, rows: list[dict[str, float]], summary: dict[str, Any]) -> str:
-    """Name the largest part of a large total error and its remedy; empty if the error is small.
-
-    Also empty if a warning recommends cleaning the scan, because no finer grid helps before.
-    """
-
+    """The largest part of a large total error and its remedy; "" if the scan needs cleaning."""
     if case.periodic or not any(row["total_error"] >= _LARGE for row in rows):
         return ""
     if any(f"{CLEANING} = " in warning for warning in summary["warnings"]):
@@ -192,8 +187,6 @@ def _advice(case: Case, rows: list[dict[str, float]], summary: dict[str, Any]) -
 
 
 def _draw_partial_results(folder: ResultsFolder, depths: int, figures: FigureFormat) -> None:
-    """Print how many depths a run computed before it ended early, and draw its figures."""
-
     if not folder.rows:
         return
     of = " (means over the completed surfaces)" if "realisations" in folder.rows[0] else ""
@@ -223,7 +216,6 @@ def _with_error(cor: float, error: float, wanted: bool) -> str:
 
 
 def _curve(rows: list[dict[str, float]], *, wanted: bool) -> Table:
-
     if "nominal_pressure_Pa" in rows[0]:
         return _periodic_curve(rows)
     adhesive = any(row["pull_off_force_N"] > 0 for row in rows)
@@ -249,13 +241,11 @@ def _curve(rows: list[dict[str, float]], *, wanted: bool) -> Table:
 
 
 def _force(row: dict[str, float]) -> str:
-
     force, error = row["pull_off_force_N"], row["pull_off_error_N"]
     return f"{quantity(force, 'N')} ± {error / force:.0%}" if force > 0 else "unknown"
 
 
 def _periodic_curve(rows: list[dict[str, float]]) -> Table:
-
     table = table_of_numbers(
         "depth (nm)", "mean gap (nm)", "pressure (MPa)", "area (%)", "energy (J)", "resolved"
     )

@@ -71,10 +71,7 @@ def law_figure(law: Law) -> Figure:
 
 
 def computed_points(law: Law, label: str, open_label: str) -> Points:
-    """Make a marker with an error bar for each point of `law`.
-
-    The marker is open if the grid does not resolve the contact at this point.
-    """
+    """Make a marker for each point of `law`, open where the grid does not resolve the contact."""
     cor = law.column("restitution")
     error, error_label = bars(cor, law.column("error"))
     return Points(
@@ -94,11 +91,10 @@ def theory_figure(
     marks: Mapping[str, float],
     law: Law | None = None,
 ) -> Figure:
-    """Plot COR against velocity: one line for each theory, and the computed points of `law`.
+    """Plot theories, and the computed points of `law`.
 
     Each of `lines` is a tuple: the name, whether the line is a fit, the velocities (m/s), and COR.
-    Lines without a finite COR are left out. `marks` maps the symbols "V_y" and "V_s" to the
-    velocities (m/s) of first yield and of sticking.
+    `marks` maps the symbols "V_y" and "V_s" to velocities (m/s).
     """
     series: list[Series] = (
         [] if law is None else [computed_points(law, "computed", "computed, not resolved")]
@@ -124,10 +120,9 @@ _MOST_ENTRIES = 2 * len(PALETTE)  # each colour with two kinds of lines
 
 
 def mixture_figure(title: str, laws: Sequence[Law]) -> Figure:
-    """Plot the COR: a chart for every pair of materials, with a line for every pair of sizes.
+    """Plot COR: a chart for every pair of materials, with a line for every pair of sizes.
 
-    Every line has an entry in the legend, its reduced radius R*. In a chart of more than
-    `_MOST_ENTRIES` lines, grey lines between the labelled ones share one entry.
+    In a chart of more than `_MOST_ENTRIES` lines, grey lines share one entry of the legend.
     """
     families = families_of(laws)
     names = [f"{first} on {second}" if len(families) > 1 else "" for first, second in families]
@@ -158,7 +153,6 @@ def _line(law: Law, place: int | None) -> Line:
 
 
 def families_of(laws: Sequence[Law]) -> dict[tuple[str, str], list[Law]]:
-    """Group the laws by their two materials; the keys are the names of the materials."""
     families: dict[tuple[str, str], list[Law]] = {}
     for law in laws:
         families.setdefault((law.first.name, law.second.name), []).append(law)
@@ -166,7 +160,6 @@ def families_of(laws: Sequence[Law]) -> dict[tuple[str, str], list[Law]]:
 
 
 def fit_figure(fit: Fit) -> Figure:
-    """Plot measured COR with its standard deviations, and the fitted COR with its 95 % band."""
     curve, measured = fit.curve, fit.measured
     series: list[Series] = []
     if curve.velocity.size > 1:
@@ -197,12 +190,10 @@ MOST_LINES = 60  # largest number of lines in a figure; more cannot be distingui
 
 
 def rows_with(case: StoredCase, abscissa: Abscissa) -> list[dict[str, float]]:
-    """Select the rows of the curve of `case` in which `abscissa` has a value."""
     return [row for row in case.curve.rows if not math.isnan(row[abscissa.column])]
 
 
 def study_figure(cases: Sequence[StoredCase], abscissa: Abscissa) -> Figure:
-    """Plot COR against `abscissa` for the first `MOST_LINES` of `cases`."""
     series = []
     for number, case in enumerate(cases[:MOST_LINES]):
         rows = rows_with(case, abscissa)

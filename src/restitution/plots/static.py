@@ -65,10 +65,6 @@ _DATELESS: dict[Format, dict[str, Any]] = {
 def write_figures(
     out: Path, figures: Iterable[tuple[str, Figure]], file_format: Format = "png"
 ) -> list[Path]:
-    """Write each figure under its name into the folder `out`; return the files.
-
-    Raises `OutputError` if a file cannot be written.
-    """
     return [write_figure(out / name, figure, file_format) for name, figure in figures]
 
 
