@@ -259,7 +259,8 @@ def _cell(centres: Array) -> float:
 
 def _plain(text: str) -> str:
     """Wrap `text` to a title of at most two lines, in which $ does not begin a formula."""
-    return _escaped("\n".join(textwrap.wrap(text, 55, max_lines=2, placeholder=" …")))
+    whole = text.replace(" %", "\N{NO-BREAK SPACE}%")
+    return _escaped("\n".join(textwrap.wrap(whole, 55, max_lines=2, placeholder=" …")))
 
 
 def _escaped(text: str) -> str:
