@@ -172,7 +172,7 @@ def test_a_line_is_fitted_from_three_roughnesses_on(stored):
     (finding,) = [f for f in (c({**stored, "critical": made}) for c in CLAIMS) if f.figure == "11"]
     assert finding.verdict == "agrees"
     assert finding.number > 0.99
-    assert re.match(r"i_cr,max = (10|9\.9) mm", finding.found)
+    assert re.match(r"i_cr,max = (10|9\.9) mm", finding.result)
     assert len(curves(made)) == 4
 
 

@@ -79,11 +79,7 @@ def _print_error(message: str) -> None:
 
 
 def prepare(arguments: Sequence[str]) -> None:
-    """Check the current folder, the arguments of the command line and environment variables.
-
-    Raises `CaseError` if the number of threads is invalid, if the current folder was removed, or if
-    a path is not UTF-8. The netCDF library requires UTF-8.
-    """
+    """Refuse a wrong number of threads, a removed folder, and paths that are not UTF-8."""
     # Select a matplotlib backend that writes files, because the environment may select an
     # interactive one.
     os.environ["MPLBACKEND"] = "agg"

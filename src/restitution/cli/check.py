@@ -77,7 +77,6 @@ def check(case: Path) -> None:
 
 def _read(path: Path) -> tuple[Case, int]:
     """Return the case in `path` and 0, or the first case of a study and its number of cases."""
-
     text = read_text(path)
     with naming(path):
         if "sweep" not in parse_toml(text):
@@ -87,7 +86,6 @@ def _read(path: Path) -> tuple[Case, int]:
 
 
 def _table(case: Case, contact: Contact, *, auto: bool) -> Table:
-
     table = Table("", Column(justify="right"), "", box=None, show_header=False)
     nx, ny = contact.grid.nodes
     hx, hy = contact.grid.spacing

@@ -82,7 +82,6 @@ def compare_theory(case: Path, out: Path | None, law: Path | None, figures: Figu
 
 
 def _refuse(law: Path | None) -> None:
-    """Raise `CaseError` if a law is given for a periodic contact."""
     if law is not None:
         raise CaseError(
             "--law: a periodic contact has no restitution law; leave out --law (to compare with "
@@ -91,7 +90,6 @@ def _refuse(law: Path | None) -> None:
 
 
 def _tables(velocities: list[float], curves: list[Theory], width: int) -> Iterator[Table]:
-    """Make tables of COR that fit into `width` characters. Each theory is a column of a table."""
     heads = ["\n".join(textwrap.wrap(curve.name, 9, break_long_words=False)) for curve in curves]
     start = 0
     while start < len(curves):
@@ -113,11 +111,6 @@ def _width(head: str) -> int:
 
 
 def _compare_area(areas: AreaTheory, source: Path, out: Path | None, figures: FigureFormat) -> None:
-    """Print the areas of `given`; write table and figure into `out`, unless it is None.
-
-    `source` is the case file or the results folder.
-    """
-
     written = []
     if out is not None:
         written = [
@@ -150,7 +143,6 @@ def _compare_area(areas: AreaTheory, source: Path, out: Path | None, figures: Fi
 
 
 def _area_table(areas: AreaTheory, computed: bool) -> Table:
-
     columns = ["pressure (MPa)", "persson (%)"]
     if computed:
         columns += ["computed (%)", "computed/persson", "kappa", "stiffness (MPa/nm)"]

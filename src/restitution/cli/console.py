@@ -55,7 +55,6 @@ def print_numbers(table: Table) -> None:
 
 
 def warn(message: str) -> None:
-    """Print one warning on standard error."""
     say(f"Warning: {one_line(message)}", errors, "yellow")
 
 
@@ -98,13 +97,11 @@ def warn_once() -> Iterator[Warn]:
 
 
 def print_error(message: str) -> None:
-    """Print one error on standard error."""
     say(f"Error: {one_line(message)}", errors, "red")
 
 
 @cache
 def hint_at_kernels() -> None:
-    """Print a hint on standard error if solves are slow because compiled kernels are missing."""
     # Kernels that do not exist are an error of this import, which this module prints.
     from restitution.numerics.convolution.device import CPU, current
     from restitution.numerics.kernels import missing
@@ -125,12 +122,10 @@ def say_written(path: Path, names: Iterable[str] = ()) -> None:
 
 
 def say_next(line: str) -> None:
-    """Print the command that usually comes next."""
     say(f"Next: {line}")
 
 
 def progress_bar(*counts: ProgressColumn) -> Progress:
-    """Make a progress bar with a description, the columns `counts`, and times."""
     return Progress(
         TextColumn("{task.description}"),
         BarColumn(),

@@ -65,8 +65,6 @@ def fit(measured: Path, case: Path, free: list[str], out: Path, figures: FigureF
 
 
 def _parameter(result: "Fit", k: int) -> str:
-    """The value of a parameter with its intervals: with the model first, then of the data alone."""
-
     parameter, uncertainty = result.parameters[k], result.uncertainty
     value = f"{parameter.key} = {parameter.text(result.factors[k])}"
     if not identifiable(result, k):

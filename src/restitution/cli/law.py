@@ -53,7 +53,6 @@ def fit_law(results: Path, out: Path, figures: FigureFormat) -> None:
 
 
 def _in_words(law: "Law") -> Iterator[str]:
-
     if law.sticks_below is not None:
         yield f"sticks below {law.sticking}"
     if law.fit is None and law.column("restitution").min() > 1 - LOSS:

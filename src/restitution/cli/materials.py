@@ -54,7 +54,6 @@ def materials(name: str | None, *, adhesion: bool, json: bool) -> None:
 
 
 def _show_pairs(name: str | None, json: bool) -> None:
-    """Print the work of adhesion of all pairs, or of the pairs that contain the material `name`."""
     chosen = None if name is None else material(name).key
     if chosen:
         work_of_adhesion(chosen, chosen)  # refuse a material without a surface energy

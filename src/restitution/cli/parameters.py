@@ -90,12 +90,10 @@ def one_of(words: type[StrEnum], *names: str, **more: Any) -> Any:
 
 
 def given(metavar: str, help_text: str) -> Any:
-    """Make an argument for a path without a default."""
     return typer.Argument(metavar=metavar, help=help_text, show_default=False, readable=False)
 
 
 def output(metavar: str, help_text: str, **more: Any) -> Any:
-    """Make the option for a file or folder that a verb writes."""
     return typer.Option("-o", "--out", metavar=metavar, help=help_text, readable=False, **more)
 
 
@@ -105,7 +103,6 @@ def option(metavar: str, help_text: str, *names: str, **more: Any) -> Any:
 
 
 def flag(name: str, help_text: str) -> Any:
-    """Make an option without a value."""
     return typer.Option(name, help=help_text)
 
 

@@ -82,11 +82,10 @@ def _run(
     start: Callable[..., dict[str, Any]],
     curves: Callable[[Case], int],
 ) -> dict[str, Any]:
-    """Compute the case in the file `case`; store, print and draw the results; return the summary.
+    """Compute, store, print and draw a case, or the depths computed before an interruption.
 
-    `start` computes the case. It has the parameters of `run_realisations` and returns the summary.
-    `curves` returns the number of curves of a case, for the progress bar. If a run is interrupted
-    or fails, the depths computed so far are stored and drawn.
+    `start` has the parameters of `run_realisations`. `curves` returns the number of curves of a
+    case, for the progress bar.
     """
     read, text = read_case(case)
     with on_device(device.value), locked(out):
@@ -169,10 +168,7 @@ def _elastic_error(points: Sequence[Point]) -> str:
 
 
 def _advice(case: Case, points: Sequence[Point], summary: dict[str, Any]) -> str:
-    """Name the largest part of a large total error and its remedy; empty if the error is small.
-
-    Also empty if a warning recommends cleaning the scan, because no finer grid helps before.
-    """
+    """The largest part of a large total error and its remedy; "" if the scan needs cleaning."""
     if case.periodic or not any(point.total_error >= _LARGE for point in points):
         return ""
     if any(f"{CLEANING} = " in warning for warning in summary["warnings"]):

@@ -76,8 +76,6 @@ def _oblique(
     friction: float | None,
     out: Path | None,
 ) -> None:
-    """Compute oblique impacts at every velocity and angle, and print them as a table."""
-
     impact = run.case.impact
     if friction is None:
         friction = run.case.interface.friction
@@ -119,12 +117,12 @@ def _oblique(
         for slope in at:
             collision = oblique.collide_obliquely(force, speed, slope, friction, (first, second))
             courses += oblique.course(collision)
-            e_t, off = collision.tangential_restitution, collision.tangential_restitution_error
+            e_t, bar = collision.tangential_restitution, collision.tangential_restitution_error
             table.add_row(
                 f"{collision.velocity:.4g}",
                 f"{math.degrees(slope):.4g}",
                 f"{collision.normal_restitution:.4f}",
-                f"{e_t:.3f} ± {off:.3f}",
+                f"{e_t:.3f} ± {bar:.3f}",
                 f"{math.degrees(collision.rebound_angle):.2f}",
                 ", ".join(f"{spin:.5g}" for spin in collision.spins),
                 f"{collision.friction_loss:.4g}",

@@ -85,7 +85,6 @@ def _about_scans(provenance: dict[str, str | float]) -> Iterator[str]:
 
 
 def _curvature(file: str, radius: float) -> str:
-    """Describe the curvature that was subtracted from a scan."""
     form = "hollow" if radius < 0 else "sphere"
     return (
         f"{file}: the subtracted paraboloid is as curved as a {form} with a radius of "

@@ -31,7 +31,6 @@ def identifiable(fit: Fit, parameter: int) -> bool:
 
 
 def findings(fit: Fit) -> list[str]:
-    """Write one sentence for each problem of the fit, the most serious problem first."""
     return [
         *_not_identifiable(fit),
         *_correlated(fit),

@@ -167,7 +167,6 @@ def _model_share(case: Case) -> float:
 
 
 def _noise(measured: Measured, fitted: Array, parameters: int) -> Array:
-    """Standard deviations of the measured COR, if need be estimated from the residuals."""
     if measured.deviation is not None:
         return measured.deviation
     freedom = fitted.size - parameters

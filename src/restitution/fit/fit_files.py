@@ -40,8 +40,6 @@ def write_fit(fit: Fit, text: str, out: Path) -> list[Path]:
 
 
 def fitted_case(fit: Fit, out: Path) -> str:
-    """The case file for `out`, with fitted values and measured velocities."""
-
     content = parse_toml(fit.model.text(fit.x, velocities_to_run(fit.measured.velocity), _DIGITS))
     rough = content.get("roughness", [])
     for part in rough if isinstance(rough, list) else [rough]:

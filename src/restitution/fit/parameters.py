@@ -31,7 +31,6 @@ class Parameter:
     unit: str
 
     def scaled(self, factor: float, digits: int = 17) -> str | float:
-        """The first guess times `factor`, as in a case file."""
         if isinstance(self.written, str):
             return scaled(self.written, factor, digits)
         return float(f"{self.written * factor:.{digits}g}")
@@ -46,7 +45,6 @@ def with_factors(
     factors: Array,
     digits: int = 17,
 ) -> dict[str, Any]:
-    """Copy the tables of a case with each first guess multiplied by its factor."""
     case = copy.deepcopy(dict(content))
     for parameter, factor in zip(parameters, factors.tolist(), strict=True):
         put(case, parameter.key, parameter.scaled(factor, digits))

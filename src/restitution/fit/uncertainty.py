@@ -64,12 +64,10 @@ class Deviations:
 
     @property
     def by_grid(self) -> Array:
-        """The field `grid`, or zeros if it is None."""
         return np.zeros(self.random.size) if self.grid is None else self.grid
 
     @property
     def systematic(self) -> Array:
-        """Root sum of squares of `random`, `by_surface` and `by_grid`, shape (points,)."""
         squares = self.random**2 + (self.by_surface**2).sum(axis=0) + self.by_grid**2
         return np.asarray(np.sqrt(squares))
 
@@ -92,7 +90,6 @@ class Uncertainty:
 
     @cached_property
     def parts(self) -> dict[str, Array]:
-        """The parts of the covariance C due to noise, surface and grid."""
         P, by = self.sensitivity, self.deviations
         surfaces = by.by_surface @ P.T
         return {
@@ -144,7 +141,6 @@ class Uncertainty:
 
     @cached_property
     def combined_halves(self) -> list[float]:
-        """`halves` with the error of the model."""
         by_model = self.deviations.model_share * self.by_model
         halves = np.hypot(self.halves, by_model).tolist()
         return [half if half < _UNBOUNDED else math.inf for half in halves]

@@ -101,7 +101,6 @@ _PERSSON = (
 
 
 def methods(summary: Mapping[str, Any]) -> PageTable:
-    """Make the table of the methods of a run; `summary` is the content of its `summary.json`."""
     model = summary["model"]
     periodic = model["half_space"].startswith("periodic")
     rows = list(_PERIODIC if periodic else _ALWAYS)

@@ -72,7 +72,6 @@ def _columns(results: xr.Dataset, *names: str) -> list[np.ndarray[Any, np.dtype[
 
 
 def _states(results: xr.Dataset) -> PageTable:
-    """The table of all depths, in units for people."""
     theory = persson(results)
     names = ("nominal_pressure", "mean_gap", "corrected_relative_area", "largest_pressure")
     rows: list[list[Cell]] = [

@@ -22,7 +22,6 @@ _PAGES = {
 
 
 def write_report(out: Path) -> Path:
-    """Write the page of the results in `out`; return the path of the page. Raises `OutputError`."""
     for name, write in _PAGES.items():
         if (out / name).is_file():
             try:

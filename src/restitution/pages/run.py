@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from restitution.case.omissions import default_yield
 from restitution.contact.checks.resolution import NODES_PER_PATCH
 from restitution.curve.oblique import ObliquePoint
+from restitution.display import quantity
 from restitution.pages.methods import methods
 from restitution.pages.page import Cell, Drawing, Listing, Page, PageTable, write_page
 from restitution.plots.cor import Abscissa
@@ -74,7 +75,7 @@ def _in_words(run: RunResults) -> str:
     if "grids" in summary:
         what += f", on grids refined {', '.join(map(str, summary['grids']))} times"
     ended = "" if summary["status"] == "complete" else f"; {summary['status']}: {summary['reason']}"
-    return f"{what}; {nx} × {ny} nodes, spacing {1e6 * h:.4g} µm{ended}"
+    return f"{what}; {nx} × {ny} nodes, spacing {quantity(h, 'm')}{ended}"
 
 
 def _span(values: NDArray[np.float64], digits: str) -> str:
@@ -120,7 +121,8 @@ def _force(results: xr.Dataset) -> Drawing:
     return Drawing(
         "Load and displacement",
         load_displacement(results),
-        f"Normal force against indentation, up to {load.max():.4g} N at {depth.max():.4g} µm",
+        f"Normal force against indentation, up to {quantity(load.max(), 'N')} at "
+        f"{quantity(1e-6 * depth.max(), 'm')}",
         f"The loading curve{', and unloading curves from some of the depths' * bool(unloading)}.",
         PageTable("Curves", ["curve", "indentation (µm)", "force (N)"], rows),
     )
@@ -140,14 +142,13 @@ def _pressure(results: xr.Dataset) -> Drawing:
 
 
 def maps_drawing(maps: xr.Dataset, results: xr.Dataset) -> Drawing:
-    """Draw the maps of several depths; the table has the largest values of all depths."""
     depth = str(maps["pressure"].dims[0])
     largest = [maps[name].max(("x", "y")).values for name in ("pressure", "plastic_displacement")]
     title, down = results.attrs.get("title", ""), results.attrs.get("surface_y_axis") == "down"
     return Drawing(
         "Contact pressure at several depths",
         depth_maps_figure(maps, title, downwards=down),
-        f"Maps of the contact pressure, up to {1e-6 * largest[0].max():.4g} MPa",
+        f"Maps of the contact pressure, up to {quantity(largest[0].max(), 'Pa')}",
         f"All {maps.sizes[depth]} depths are in maps.nc.",
         PageTable(
             "Largest values of each depth",
@@ -160,7 +161,6 @@ def maps_drawing(maps: xr.Dataset, results: xr.Dataset) -> Drawing:
 
 
 def pressure_percentiles(results: xr.Dataset) -> PageTable:
-    """Make a table of percentiles of the maps of pressure and plastic displacement."""
     columns = {
         f"{words} ({unit})": scale * results[name].values[results[name].values != 0]
         for name, words, scale, unit in (
@@ -194,7 +194,6 @@ def _diagnostics(results: xr.Dataset, summary: Mapping[str, Any]) -> PageTable:
 
 
 def groups(summary: Mapping[str, Any]) -> Iterator[PageTable]:
-    """Yield a table for each group of quantities in `summary.json`."""
     for key, title in (
         ("derived", "Derived quantities"),
         ("surface_statistics", "Surface"),

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from restitution.display import quantity
 from restitution.numerics.grid import Grid
 from restitution.pages.page import Cell, Drawing, Page, PageTable, write_page
 from restitution.plots.figure import Map
@@ -73,12 +74,12 @@ def write_surface_page(out: Path) -> Path:
     hx, hy = (float(provenance[f"spacing_{axis}_m"]) for axis in ("x", "y"))
     surface = Surface(dataset["height"].values, Grid(nodes, (hx, hy)), provenance)
     origin: list[list[Cell]] = [[k, value] for k, value in provenance.items() if k != "notice"]
-    size = " × ".join(f"{1e6 * edge:.4g}" for edge in surface.grid.size)
+    size = " × ".join(quantity(edge, "m") for edge in surface.grid.size)
     page = Page(
         title=dataset.attrs.get("title") or "Surface",
         intro=[
-            f"{nodes[0]} × {nodes[1]} nodes, spacing {1e6 * hx:.4g} × {1e6 * hy:.4g} µm, "
-            f"edge lengths {size} µm; "
+            f"{nodes[0]} × {nodes[1]} nodes, spacing {quantity(hx, 'm')} × {quantity(hy, 'm')}, "
+            f"edge lengths {size}; "
             f"{provenance.get('kind') or provenance.get('source', 'surface')}"
         ],
         warnings=list(statistics.get("warnings", [])),

@@ -14,11 +14,7 @@ _MARGIN = 0.02  # smallest distance of the values from the ends of the axis
 
 
 class Abscissa(NamedTuple):
-    """The x axis of a COR figure.
-
-    The plotted values are those of `variable` in a dataset, which is also a field of `Point`.
-    `scale` converts these values to the unit of `axis`.
-    """
+    """The x axis of a COR figure: `variable` of a dataset and of `Point`, times `scale`."""
 
     name: str
     variable: str
@@ -41,10 +37,7 @@ IMPACT_VELOCITY = Abscissa(
 
 
 def cor_axis(series: Sequence[Series]) -> Axis:
-    """Make an axis of COR that spans `series` and their error bars.
-
-    Its ends are multiples of 0.1, except near COR = 0 and COR = 1.
-    """
+    """Make an axis of COR that spans `series` and their error bars."""
     shown: Array = np.concatenate([np.ravel(y) for part in series for y in _values(part)])
     values = shown[np.isfinite(shown)] if np.isfinite(shown).any() else np.array([0.0, 1.0])
     low = max(_STEP * np.floor((values.min() - _MARGIN) / _STEP), 0.0)
@@ -58,15 +51,11 @@ def cor_axis(series: Sequence[Series]) -> Axis:
 
 
 def cor_chart(x: Axis, series: Sequence[Series], title: str = "") -> Chart:
-    """Make a chart of COR with the axis of `cor_axis`."""
     return Chart(x, cor_axis(series), series, title)
 
 
 def bars(cor: Array, error: Array) -> tuple[Array, str]:
-    """Return the lengths of the error bars below and above `cor`, shape (2, n), and a legend text.
-
-    COR lies between 0 and 1, so the bars are cut at 0 and 1.
-    """
+    """Lengths of the error bars below and above `cor`, shape (2, n), and a legend text."""
     lengths = np.clip([np.minimum(error, cor), np.minimum(error, 1 - cor)], 0, None)
     cut = bool((error > lengths + 1e-12).any())
     return lengths, "total error (cut at 0 and 1)" if cut else "total error"

@@ -167,10 +167,8 @@ def legend_entries(panel: Chart | Map) -> list[str]:
 
 
 def has_open(points: Points) -> bool:
-    """Whether any marker is open."""
     return points.open is not None and bool(points.open.any())
 
 
 def has_error(points: Points) -> bool:
-    """Whether any point has an error bar."""
     return points.error is not None and bool(np.isfinite(points.error).any())

@@ -59,7 +59,6 @@ def shown_step(panel: Map) -> int:
 
 
 def _chart_axes(chart: Chart) -> dict[str, Any]:
-    """Make the axes of a chart. If it has an axis on the right, make the right margin wider."""
     axes = {"xaxis": _axis(chart.x), "yaxis": _axis(chart.y)}
     if chart.right is None:
         return axes
@@ -228,5 +227,4 @@ def _faint(color: str) -> str:
 
 
 def _escaped(text: str) -> str:
-    """Escape the characters of markup in `text`."""
     return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")

@@ -73,10 +73,7 @@ def law_figure(law: Law) -> Figure:
 
 
 def computed_points(law: Law, label: str, open_label: str) -> Points:
-    """Make a marker with an error bar for each point of `law`.
-
-    The marker is open if the grid does not resolve the contact at this point.
-    """
+    """Make a marker for each point of `law`, open where the grid does not resolve the contact."""
     cor = law.column("restitution")
     error, error_label = bars(cor, law.column("error"))
     return Points(
@@ -96,11 +93,10 @@ def theory_figure(
     marks: Mapping[str, float],
     law: Law | None = None,
 ) -> Figure:
-    """Plot COR against velocity: one line for each theory, and the computed points of `law`.
+    """Plot theories, and the computed points of `law`.
 
     Each of `lines` is a tuple: the name, whether the line is a fit, the velocities (m/s), and COR.
-    Lines without a finite COR are left out. `marks` maps the symbols "V_y" and "V_s" to the
-    velocities (m/s) of first yield and of sticking.
+    `marks` maps the symbols "V_y" and "V_s" to velocities (m/s).
     """
     series: list[Series] = (
         [] if law is None else [computed_points(law, "computed", "computed, not resolved")]
@@ -126,10 +122,9 @@ _MOST_ENTRIES = 2 * len(PALETTE)  # each colour with two kinds of lines
 
 
 def mixture_figure(title: str, laws: Sequence[Law]) -> Figure:
-    """Plot the COR: a chart for every pair of materials, with a line for every pair of sizes.
+    """Plot COR: a chart for every pair of materials, with a line for every pair of sizes.
 
-    Every line has an entry in the legend, its reduced radius R*. In a chart of more than
-    `_MOST_ENTRIES` lines, grey lines between the labelled ones share one entry.
+    In a chart of more than `_MOST_ENTRIES` lines, grey lines share one entry of the legend.
     """
     families = families_of(laws)
     names = [f"{first} on {second}" if len(families) > 1 else "" for first, second in families]
@@ -160,7 +155,6 @@ def _line(law: Law, place: int | None) -> Line:
 
 
 def families_of(laws: Sequence[Law]) -> dict[tuple[str, str], list[Law]]:
-    """Group the laws by their two materials; the keys are the names of the materials."""
     families: dict[tuple[str, str], list[Law]] = {}
     for law in laws:
         families.setdefault((law.first.name, law.second.name), []).append(law)
@@ -168,7 +162,6 @@ def families_of(laws: Sequence[Law]) -> dict[tuple[str, str], list[Law]]:
 
 
 def fit_figure(fit: Fit) -> Figure:
-    """Plot measured COR with its standard deviations, and the fitted COR with its 95 % band."""
     curve, measured = fit.curve, fit.measured
     series: list[Series] = []
     if curve.velocity.size > 1:
@@ -199,13 +192,11 @@ MOST_LINES = 60  # largest number of lines in a figure; more cannot be distingui
 
 
 def points_with(case: StoredCase, abscissa: Abscissa) -> list[Point]:
-    """Select the points of the curve of `case` at which `abscissa` has a value."""
     name = abscissa.variable
     return [point for point in case.curve.points if not math.isnan(getattr(point, name))]
 
 
 def study_figure(cases: Sequence[StoredCase], abscissa: Abscissa) -> Figure:
-    """Plot COR against `abscissa` for the first `MOST_LINES` of `cases`."""
     series = []
     for number, case in enumerate(cases[:MOST_LINES]):
         points = points_with(case, abscissa)

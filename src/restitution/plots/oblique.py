@@ -29,16 +29,13 @@ _ROUNDS = 50  # number of fixed-point iterations for the angle of full slip
 
 
 def has_oblique(results: xr.Dataset) -> bool:
-    """Whether `results` contain oblique impacts."""
     return "oblique_tangential_restitution" in results
 
 
 def oblique_figure(results: xr.Dataset) -> Figure:
     """Plot tangential restitution, rebound and spin of the first body against the angle of impact.
 
-    The dotted line marks the smallest angle of impact at which the whole contact slides (full
-    slip). The dashed line is the closed form of the tangential restitution in full slip. Both lines
-    are drawn for the largest impact velocity, and only if no body spins before the impact.
+    Lines for full slip are those of the largest impact velocity.
     """
     degrees = np.degrees(results["oblique_angle"].values)
     axis = Axis("angle of impact", "°", low=0.0, high=min(90.0, 1.05 * degrees.max() + 1))
@@ -56,10 +53,7 @@ def oblique_figure(results: xr.Dataset) -> Figure:
 
 
 def _points(results: xr.Dataset, variable: str, scale: float) -> Iterator[Points]:
-    """Yield a series for each impact velocity.
-
-    A marker is open if part of the contact sticks.
-    """
+    """Yield a series for each impact velocity; markers are open if part of the contact sticks."""
     degrees = np.degrees(results["oblique_angle"].values)
     for k, velocity in enumerate(results["oblique_velocity"].values):
         values = scale * results[variable][k].values
@@ -80,11 +74,9 @@ def _points(results: xr.Dataset, variable: str, scale: float) -> Iterator[Points
 
 
 def _full_slip(results: xr.Dataset) -> list[Series]:
-    """Mark the angle of full slip; beyond it, draw the closed form of tangential restitution.
+    """Mark the smallest angle of full slip; beyond it, draw the closed form of e_t.
 
-    The angle of full slip is the smallest angle of impact at which the whole contact slides. The
-    returned list is empty without friction or without results. It is also empty if a body spins
-    before the impact, because the closed form does not include this spin.
+    The closed form does not include a spin before the impact.
     """
     if results["oblique_first_spin_before"].any() or results["oblique_second_spin_before"].any():
         return []

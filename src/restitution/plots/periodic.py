@@ -47,7 +47,6 @@ def has_stiffness(results: xr.Dataset) -> bool:
 
 
 def has_distribution(results: xr.Dataset) -> bool:
-    """Whether `results` contain a distribution of the contact pressure."""
     return "pressure_density" in results and bool(results["pressure_density"].values.any())
 
 
@@ -65,10 +64,6 @@ def _pressed(results: xr.Dataset) -> xr.Dataset:
 
 
 def area_against_pressure(results: xr.Dataset) -> Figure:
-    """Plot relative contact area and mean gap against nominal pressure.
-
-    For comparison, a dashed line shows the contact area from Persson's theory of elastic contact.
-    """
     pressed = _pressed(results)
     p = 1e-6 * pressed["nominal_pressure"].values
     area = 100 * pressed["corrected_relative_area"].values
@@ -90,7 +85,6 @@ def area_against_pressure(results: xr.Dataset) -> Figure:
 
 
 def area_theory_figure(areas: AreaTheory) -> Figure:
-    """Plot the area from Persson's theory against nominal pressure, and the computed areas."""
     p = areas.pressure
     fine = np.geomspace(p.min(), p.max(), 200) if p.size > 1 else p
     line = 100 * areas.theory.relative_area(fine)
@@ -104,7 +98,6 @@ def area_theory_figure(areas: AreaTheory) -> Figure:
 
 
 def stiffness_against_pressure(results: xr.Dataset) -> Figure:
-    """Plot the normal stiffness against nominal pressure, beside a line of proportionality."""
     pressed = _pressed(results)
     pressed = pressed.isel(depth=pressed["stiffness"].values > 0)
     p, k = 1e-6 * pressed["nominal_pressure"].values, 1e-15 * pressed["stiffness"].values
@@ -115,7 +108,6 @@ def stiffness_against_pressure(results: xr.Dataset) -> Figure:
 
 
 def pressure_distribution(results: xr.Dataset) -> Figure:
-    """Plot the distribution of the contact pressure at some depths, beside Persson's theory."""
     title, theory = results.attrs.get("title", ""), persson(results)
     carrying = np.flatnonzero(results["pressure_density"].values.any(axis=1))
     shown = carrying[np.unique(np.linspace(0, carrying.size - 1, _SHOWN).round().astype(int))]

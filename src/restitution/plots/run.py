@@ -56,7 +56,6 @@ _DASHES = (DOTTED, DASH_DOTTED, DASHED, SOLID)  # line styles of the coarser gri
 
 
 def run_figures(results: xr.Dataset) -> Iterator[tuple[str, Figure]]:
-    """Yield the name and the content of every figure that can be drawn from `results`."""
     if results.sizes["indentation_max"] == 0:
         return
     yield "load-displacement", load_displacement(results)
@@ -75,12 +74,11 @@ def abscissae(results: xr.Dataset) -> list[Abscissa]:
 
 
 def has_map(results: xr.Dataset) -> bool:
-    """Whether `results` contain a contact map. The results of an ensemble contain no map."""
+    """Whether `results` contain a contact map; those of an ensemble do not."""
     return "pressure" in results and bool(results["pressure"].any())
 
 
 def load_displacement(results: xr.Dataset) -> Figure:
-    """Plot force against indentation (loading and unloading), on linear and logarithmic axes."""
     depth, force = 1e6 * results["indentation"].values, results["force"].values
     references = _references(force_references(results), 1e6)
     if "smooth_force" in results and results.attrs["derived_yield_pressure_Pa"] != "None":
@@ -114,15 +112,11 @@ def load_displacement(results: xr.Dataset) -> Figure:
 
 
 def pressure_map(results: xr.Dataset) -> Figure:
-    """Draw maps of the contact pressure and the plastic displacement at the deepest indentation.
-
-    An elastic contact has no map of plastic displacement. The pressure map is left out if nearly
-    the whole contact is at the same yield pressure.
-    """
+    """Draw pressure (unless it is nearly uniform) and plastic displacement at the deepest depth."""
     pressure = 1e-6 * results["pressure"].values
     depth = results.get("plastic_displacement", xr.zeros_like(results["pressure"])).values
     touched, yields = (pressure != 0) | (depth != 0), bool(depth.any())
-    where = f"at an indentation of {1e6 * float(results['indentation'].max()):.3g} µm"
+    where = f"at an indentation of {quantity(float(results['indentation'].max()), 'm')}"
     share = float(np.mean(pressure[touched] > (1 - _UNIFORM) * pressure.max()))
     saturated = yields and share >= _SATURATED
     maps: list[tuple[Axis, Array, Colours, str]] = []
@@ -149,7 +143,6 @@ def pressure_map(results: xr.Dataset) -> Figure:
 
 
 def restitution_figure(results: xr.Dataset, abscissa: Abscissa) -> Figure:
-    """Plot the coefficient of restitution with its error, and closed forms for smooth bodies."""
     scale, variable = abscissa.scale, abscissa.variable
     x, cor = scale * results[variable].values, results["restitution"].values
     series: list[Series] = []
@@ -213,11 +206,7 @@ def unloading_lines(results: xr.Dataset) -> list[Line]:
 
 
 def _span(series: list[Points | Line], name: str) -> tuple[float, float | None]:
-    """Find the lower and the upper end of an axis.
-
-    The lower end is zero or, if a value is negative, the smallest value with a margin. The upper
-    end is the largest value with a margin, or None if all values are zero.
-    """
+    """The ends of an axis with a margin; the upper end is None if all values are zero."""
     values: Array = np.concatenate([getattr(part, name) for part in series])
     low, high = float(values.min()), float(values.max())
     margin = 0.05 * (high - low)
@@ -228,10 +217,7 @@ _SHOWN = 4  # number of depths that are drawn
 
 
 def depth_maps_figure(maps: xr.Dataset, title: str, *, downwards: bool = False) -> Figure:
-    """Draw the pressure at up to four depths of `maps` (from `maps.nc`), on one part of the grid.
-
-    `downwards` says whether y increases towards the bottom.
-    """
+    """Draw the pressure at up to four depths of `maps`, on one part of the grid."""
     pressure = maps["pressure"]
     along = str(pressure.dims[0])
     touched = np.argwhere(pressure.values.any(axis=0))

@@ -65,10 +65,6 @@ _DATELESS: dict[Format, dict[str, Any]] = {
 def write_figures(
     out: Path, figures: Iterable[tuple[str, Figure]], file_format: Format = "png"
 ) -> list[Path]:
-    """Write each figure under its name into the folder `out`; return the files.
-
-    Raises `OutputError` if a file cannot be written.
-    """
     return [write_figure(out / name, figure, file_format) for name, figure in figures]
 
 
@@ -263,7 +259,8 @@ def _cell(centres: Array) -> float:
 
 def _plain(text: str) -> str:
     """Wrap `text` to a title of at most two lines, in which $ does not begin a formula."""
-    return _escaped("\n".join(textwrap.wrap(text, 55, max_lines=2, placeholder=" …")))
+    whole = text.replace(" %", "\N{NO-BREAK SPACE}%")
+    return _escaped("\n".join(textwrap.wrap(whole, 55, max_lines=2, placeholder=" …")))
 
 
 def _escaped(text: str) -> str:

@@ -26,7 +26,6 @@ _ROUNDING = 1e-15  # spectral densities below this fraction of the largest one a
 
 
 def surface_map(surface: Surface, title: str = "") -> Figure:
-    """Draw a map of the heights (nm) above their mean."""
     height = 1e9 * (surface.height - surface.height.mean())
     down = surface.provenance.get("y_axis") == "down"
     x, y = 1e6 * surface.grid.x, 1e6 * surface.grid.y
@@ -34,7 +33,6 @@ def surface_map(surface: Surface, title: str = "") -> Figure:
 
 
 def height_distribution(density: HeightDensity, curve: MaterialRatio) -> Figure:
-    """Plot the density of heights, the normal density with the same Sq, and the material ratio."""
     x = 1e9 * density.height
     return Figure(
         "",
@@ -75,10 +73,6 @@ def autocorrelation_figure(R: Autocorrelation) -> Figure:
 
 
 def spectrum_figure(spectra: list[DirectedSpectrum]) -> Figure:
-    """Plot the power spectral densities `spectra`.
-
-    Each is an average over all directions, over directions near x, or over directions near y.
-    """
     series: list[Line] = []
     largest = 0.0
     for spectrum, color, dash in zip(spectra, PALETTE, (SOLID, DOTTED, DASHED), strict=False):

@@ -1,8 +1,4 @@
-"""The claims of Ghanbarzadeh et al. (2019) on each figure, compared with the bundled studies.
-
-Each function in `CLAIMS` judges one claim of this paper. It receives the studies by name, compares
-their results with a threshold for agreement, and returns a `Judgement`.
-"""
+"""The claims of Ghanbarzadeh et al. (2019) on each figure, compared with the bundled studies."""
 
 from __future__ import annotations
 
@@ -15,6 +11,7 @@ from typing import Literal
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
+from scipy.stats import linregress
 
 from restitution.sweeps.sweep import AS_WRITTEN
 from restitution.theory import JKR, Hertz, ThorntonNing
@@ -34,15 +31,11 @@ _NEAR = 0.05  # largest relative difference at which COR counts as that of the s
 
 @dataclass(frozen=True)
 class Judgement:
-    """A claim of the paper and what the computed results say about it.
-
-    `found` describes the result in words. `number` is the value that decides whether the results
-    agree with the claim. `resolved` says at how many depths the grid resolves the contact.
-    """
+    """A claim of the paper, what the results say (`result`), and the number that decides."""
 
     figure: str
     claim: str
-    found: str
+    result: str
     number: float
     verdict: Verdict
     resolved: str
@@ -61,7 +54,6 @@ class CaseCurve:
 
 
 def curves(study: xr.Dataset) -> list[CaseCurve]:
-    """Return the complete cases of a study, labelled with their swept values."""
     dims = [str(dim) for dim in study["restitution"].dims if dim != "depth"]
     stacked = study.stack(_case=dims).transpose("_case", "depth", ...)
     keys = [str(key) for key in study.coords if key != "case" and "depth" not in study[key].dims]
@@ -76,7 +68,6 @@ def curves(study: xr.Dataset) -> list[CaseCurve]:
 
 
 def _as_written(coordinate: xr.DataArray) -> dict[float | str, str]:
-    """Map each value of a swept quantity to its text in the study file."""
     values = coordinate.values.tolist()
     # Files of earlier versions lack this attribute, because they stored the values as texts.
     written = coordinate.attrs.get(AS_WRITTEN)
@@ -86,7 +77,6 @@ def _as_written(coordinate: xr.DataArray) -> dict[float | str, str]:
 
 
 def rough_and_smooth(study: xr.Dataset) -> tuple[list[CaseCurve], CaseCurve]:
-    """Return the rough cases and the smooth case of a study with varied roughness."""
     cases = curves(study)
     smooth = next(curve for curve in cases if curve.label.startswith(SMOOTH))
     return [curve for curve in cases if not curve.label.startswith(SMOOTH)], smooth
@@ -264,9 +254,7 @@ def _single_nodes(flags: NDArray[np.bool_]) -> str:
 def critical_indentation(curve: CaseCurve, smooth: CaseCurve) -> float:
     """Depth (m) beyond which COR differs by at most 5 % from the smooth sphere; NaN if not reached.
 
-    The result lies between the last depth at which the difference exceeds 5 % and the next depth.
-    Between these depths, the difference is interpolated linearly in the logarithm of depth. If the
-    difference never exceeds 5 %, the result is the first depth.
+    The difference is interpolated linearly in the logarithm of depth.
     """
     off = np.abs(curve.cor / smooth.cor - 1)
     apart = np.flatnonzero(off > _NEAR)
@@ -292,7 +280,6 @@ def critical_indentations(study: xr.Dataset) -> dict[str, tuple[float, float]]:
 
 
 def _figure_11(studies: Studies) -> Judgement:
-    from scipy.stats import linregress
 
     indentations = critical_indentations(studies["critical"])
     resolved = _resolved(*curves(studies["critical"]))

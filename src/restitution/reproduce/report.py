@@ -61,7 +61,6 @@ _OPEN = (
 
 
 def write_reproduction(out: Path, size: Size) -> tuple[Path, list[Judgement]]:
-    """Write `report.html` from the studies in `out`; return its path and the findings."""
     stored = {name: StudyResults(out / name) for name in NAMES}
     studies = {name: study.dataset for name, study in stored.items()}
     findings = [claim(studies) for claim in CLAIMS]
@@ -77,7 +76,7 @@ def write_reproduction(out: Path, size: Size) -> tuple[Path, list[Judgement]]:
             PageTable(
                 "Claims",
                 ["figure", "verdict", "claim", "result", "number", "depths resolved"],
-                [[f.figure, f.verdict, f.claim, f.found, f.number, f.resolved] for f in findings],
+                [[f.figure, f.verdict, f.claim, f.result, f.number, f.resolved] for f in findings],
             ),
             PageTable("What the paper leaves open", ["input", "here", "in the paper"], _OPEN),
             *_drawings(studies, findings),
@@ -102,7 +101,7 @@ def _warnings(size: Size) -> list[str]:
 
 def _drawings(studies: dict[str, xr.Dataset], findings: list[Judgement]) -> list[Drawing]:
     def words(figure: str) -> str:
-        return " ".join(f"{f.found} ({f.verdict})" for f in findings if f.figure == figure)
+        return " ".join(f"{f.result} ({f.verdict})" for f in findings if f.figure == figure)
 
     rough, smooth = rough_and_smooth(studies["roughness"])
     return [

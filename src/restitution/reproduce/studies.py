@@ -54,7 +54,6 @@ _REFINED: dict[str, dict[str, Any]] = {
 
 
 def bundled(name: str, size: Size) -> Study:
-    """Return the bundled study `name` (one of `NAMES`) in the given size."""
     text = (files("restitution.reproduce") / "studies" / f"{name}.toml").read_text("utf-8")
     changes = {"quick": _QUICK, "refined": _REFINED, "paper": {}}[size].get(name, {})
     if changes:
