@@ -16,11 +16,11 @@ import numpy as np
 from shared import HERE, write_image, write_table
 
 from restitution import Body, Contact, Grid, Pair, Surface, collide, generate_surface, smooth, solve
-from restitution.contact.cohesive import COMPANION
-from restitution.contact.model_error import hysteresis_ratio, model_error
+from restitution.contact.checks.model_error import hysteresis_ratio, model_error
+from restitution.contact.cohesive.equilibrium import COMPANION
+from restitution.contact.jkr.separation import separation_of
 from restitution.contact.path import unloading_path
-from restitution.contact.prescribed_velocity import solve_at_velocity
-from restitution.contact.separation import separation_of
+from restitution.contact.prescribed.velocity import solve_at_velocity
 from restitution.errors import RestitutionError
 from restitution.numerics.quadrature import integrate_curve
 from restitution.plots.figure import DASHED, GREY, ORANGE, Axis, Chart, Figure, Line, Points

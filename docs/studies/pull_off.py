@@ -12,8 +12,8 @@ import numpy as np
 from shared import write_table
 
 from restitution import Body, Contact, Grid, Pair, Surface, solve
+from restitution.contact.jkr.separation import separate, separation_of
 from restitution.contact.loading import step
-from restitution.contact.separation import separate, separation_of
 from restitution.theory import JKR
 
 OFFSETS = ((0, 0), (0.5, 0.5), (0.5, 0), (0.23, 0.41), (0.37, 0.12), (0.08, 0.29))

@@ -11,9 +11,9 @@ if TYPE_CHECKING:
     from restitution.contact.contact import Contact, smooth
     from restitution.contact.loading import solve, step
     from restitution.contact.path import loading_path, unloading_path
-    from restitution.contact.prescribed_force import solve_at_force
-    from restitution.contact.prescribed_pressure import solve_at_pressure
-    from restitution.contact.prescribed_velocity import solve_at_velocity
+    from restitution.contact.prescribed.force import solve_at_force
+    from restitution.contact.prescribed.pressure import solve_at_pressure
+    from restitution.contact.prescribed.velocity import solve_at_velocity
     from restitution.contact.state import State
     from restitution.errors import RestitutionError
     from restitution.laws.oblique import ObliqueCollision
@@ -86,9 +86,9 @@ _MODULES = {
     "collision": ("Collision", "collide"),
     "contact.bodies": ("Body", "Pair"),
     "contact.contact": ("Contact", "smooth"),
-    "contact.prescribed_velocity": ("solve_at_velocity",),
-    "contact.prescribed_force": ("solve_at_force",),
-    "contact.prescribed_pressure": ("solve_at_pressure",),
+    "contact.prescribed.velocity": ("solve_at_velocity",),
+    "contact.prescribed.force": ("solve_at_force",),
+    "contact.prescribed.pressure": ("solve_at_pressure",),
     "contact.loading": ("solve", "step"),
     "contact.path": ("loading_path", "unloading_path"),
     "contact.state": ("State",),

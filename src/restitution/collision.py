@@ -14,8 +14,8 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from restitution.arguments import typed
-from restitution.contact.cohesive import CohesiveState
-from restitution.contact.separation import RESTITUTION_ERROR, separate, separation_of
+from restitution.contact.cohesive.equilibrium import CohesiveState
+from restitution.contact.jkr.separation import RESTITUTION_ERROR, separate, separation_of
 from restitution.contact.state import State
 from restitution.display import quantity, summary_html, summary_text
 

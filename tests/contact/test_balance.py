@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from restitution import Body, Contact, Grid, Pair, Surface, collide, solve
-from restitution.contact.adhesion import balance_of
+from restitution.contact.jkr.area import balance_of
+from restitution.contact.jkr.separation import separate, separation_of
+from restitution.contact.jkr.unloading_curve import SharedUnloading, UnloadingCurve, unloading_curve
 from restitution.contact.loading import step
-from restitution.contact.separation import separate, separation_of
-from restitution.contact.unloading_curve import SharedUnloading, UnloadingCurve, unloading_curve
 from restitution.theory import JKR
 from tolerance import approx
 
@@ -133,7 +133,7 @@ def test_every_area_has_one_point():
 
 def test_the_points_of_a_curve_are_the_balances_that_lie_below_those_before(monkeypatch):
     """Areas: two states of 900 nodes, then 800, 700 and 600; the balance of 700 is too high."""
-    from restitution.contact import unloading_curve as module
+    from restitution.contact.jkr import unloading_curve as module
 
     monkeypatch.setattr(module, "balances_are_reliable", lambda _: True)
     rows = (

@@ -10,13 +10,13 @@ from scipy.integrate import quad
 
 from restitution import Body, Contact, Grid, Pair, generate_surface, smooth
 from restitution.collision import collide
-from restitution.contact import cavity
-from restitution.contact.cavity import GROWTH, LARGEST, bound_of, yield_bound
 from restitution.contact.loading import solve, step
 from restitution.contact.path import loading_path, unloading_path
-from restitution.contact.plastic_work import plastic_work
-from restitution.contact.prescribed_force import solve_at_force
-from restitution.contact.prescribed_velocity import solve_at_velocity
+from restitution.contact.plasticity import cavity
+from restitution.contact.plasticity.cavity import GROWTH, LARGEST, bound_of, yield_bound
+from restitution.contact.plasticity.plastic_work import plastic_work
+from restitution.contact.prescribed.force import solve_at_force
+from restitution.contact.prescribed.velocity import solve_at_velocity
 from restitution.errors import CaseError
 from restitution.theory import Hertz
 from tolerance import approx

@@ -12,16 +12,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from restitution.collision import collide
-from restitution.contact import cohesive_path
 from restitution.contact.bodies import Body, Pair
-from restitution.contact.cohesive import cohesive_length, needed_spacing
-from restitution.contact.cohesive_path import follow, load_cohesive
+from restitution.contact.cohesive import path as cohesive_path
+from restitution.contact.cohesive.equilibrium import cohesive_length, needed_spacing
+from restitution.contact.cohesive.path import follow, load_cohesive
 from restitution.contact.contact import Contact, smooth
+from restitution.contact.jkr.separation import separation_of
 from restitution.contact.loading import solve, step
 from restitution.contact.path import unloading_path
-from restitution.contact.prescribed_force import solve_at_force
-from restitution.contact.prescribed_velocity import solve_at_velocity
-from restitution.contact.separation import separation_of
+from restitution.contact.prescribed.force import solve_at_force
+from restitution.contact.prescribed.velocity import solve_at_velocity
 from restitution.errors import CaseError, DomainError
 from restitution.numerics.grid import Grid
 from restitution.numerics.quadrature import integrate_curve

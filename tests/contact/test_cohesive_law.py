@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from restitution.contact.bodies import Body, Pair
-from restitution.contact.cohesive_law import BoundedLaw, largest_softening, law_of, stiffness
+from restitution.contact.cohesive.law import BoundedLaw, largest_softening, law_of, stiffness
 from restitution.contact.contact import Contact, smooth
 from restitution.numerics.grid import Grid
 from tolerance import approx

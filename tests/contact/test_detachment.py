@@ -8,16 +8,17 @@ from scipy.integrate import dblquad
 from scipy.ndimage import label
 
 from restitution import Body, Contact, Grid, Pair, Surface, solve
-from restitution.contact import adhesion, detachment
-from restitution.contact.adhesion import release_nodes
-from restitution.contact.detachment import (
+from restitution.contact.influence import half_space
+from restitution.contact.jkr import area as adhesion
+from restitution.contact.jkr import detachment
+from restitution.contact.jkr.area import release_nodes
+from restitution.contact.jkr.detachment import (
     Edge,
     released_beyond,
     released_by_closure,
     tension_limit,
 )
-from restitution.contact.influence import half_space
-from restitution.contact.separation import separate, separation_of
+from restitution.contact.jkr.separation import separate, separation_of
 from restitution.numerics.diffusion import diffuse
 from restitution.theory import Kendall
 from tolerance import approx

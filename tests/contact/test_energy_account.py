@@ -13,7 +13,7 @@ from hypothesis import HealthCheck, Phase, given, reject, settings
 from hypothesis import strategies as st
 
 from restitution import Body, Contact, Grid, Pair, collide, generate_surface, smooth, solve
-from restitution.contact.separation import separate, unloading_curve
+from restitution.contact.jkr.separation import separate, unloading_curve
 from restitution.errors import DomainError
 from tolerance import approx
 

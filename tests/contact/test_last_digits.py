@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from restitution import Body, Contact, Grid, Pair, collide, generate_surface, smooth, solve, step
-from restitution.contact.separation import separate
+from restitution.contact.jkr.separation import separate
 from restitution.numerics.kernels import instruction_set
 from tolerance import approx
 

@@ -9,7 +9,7 @@ import pytest
 
 from restitution import Body, Contact, Grid, Pair, generate_surface, smooth, solve
 from restitution.collision import collide
-from restitution.contact.model_error import (
+from restitution.contact.checks.model_error import (
     _CONSTANT,
     _GROWING,
     _NEAR_ONE,

@@ -286,7 +286,7 @@ def test_what_a_periodic_contact_refuses(model, words):
 
 
 def test_a_pressure_that_is_not_reached_is_an_error(monkeypatch):
-    from restitution.contact import prescribed_pressure
+    from restitution.contact.prescribed import pressure as prescribed_pressure
 
     monkeypatch.setattr(prescribed_pressure, "MAX_ITERATIONS", 2)
     with pytest.raises(NotConvergedError, match=r"pressure: 1e\+08 Pa was not reached at a tol"):

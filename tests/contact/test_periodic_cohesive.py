@@ -10,10 +10,10 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from restitution import Body, Contact, Grid, Pair, Surface, solve, solve_at_pressure, step
-from restitution.contact.cohesive import box_gap, needed_spacing, rigid_start
-from restitution.contact.cohesive_path import follow
+from restitution.contact.cohesive.equilibrium import box_gap, needed_spacing, rigid_start
+from restitution.contact.cohesive.path import follow
+from restitution.contact.jkr.separation import separation_of
 from restitution.contact.path import unloading_path
-from restitution.contact.separation import separation_of
 from restitution.errors import CaseError, DomainError
 from restitution.numerics.quadrature import integrate_curve
 from restitution.theory import LennardJones

@@ -7,10 +7,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from restitution.contact import prescribed_force
 from restitution.contact.contact import Contact, smooth
 from restitution.contact.loading import solve, step
-from restitution.contact.prescribed_force import solve_at_force
+from restitution.contact.prescribed import force as prescribed_force
+from restitution.contact.prescribed.force import solve_at_force
 from restitution.errors import CaseError, DomainError, NotConvergedError
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface

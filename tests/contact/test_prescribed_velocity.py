@@ -3,12 +3,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from restitution.contact import prescribed_velocity
 from restitution.contact.bodies import Body, Pair
 from restitution.contact.contact import Contact, smooth
 from restitution.contact.loading import solve
 from restitution.contact.path import loading_path
-from restitution.contact.prescribed_velocity import solve_at_velocity
+from restitution.contact.prescribed import velocity as prescribed_velocity
+from restitution.contact.prescribed.velocity import solve_at_velocity
 from restitution.errors import CaseError, DomainError
 from restitution.numerics.grid import Grid
 from restitution.theory import ThorntonNing

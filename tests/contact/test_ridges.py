@@ -7,8 +7,8 @@ import pytest
 
 from restitution import Body, Contact, Grid, Pair, Surface, smooth
 from restitution.collision import collide
-from restitution.contact.cavity import yield_bound
 from restitution.contact.path import loading_path
+from restitution.contact.plasticity.cavity import yield_bound
 from tolerance import approx
 
 Y = 1e9

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from restitution import Body, Contact, Grid, Pair, collide, generate_surface, smooth, solve
-from restitution.contact import separation
+from restitution.contact.jkr import separation
 from restitution.errors import NotConvergedError
 from tolerance import approx
 

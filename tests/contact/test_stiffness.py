@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import restitution as rs
-from restitution.contact.stiffness import normal_stiffness
+from restitution.contact.prescribed.stiffness import normal_stiffness
 from restitution.errors import CaseError
 from restitution.theory import LennardJones
 from tolerance import approx

@@ -7,7 +7,8 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 from restitution import Body, Contact, Grid, Pair, generate_surface, smooth, solve
-from restitution.contact import adhesive_work, loading
+from restitution.contact import loading
+from restitution.contact.jkr import loading_work as adhesive_work
 from tolerance import approx
 
 BODY = Body(1e-3, 420e9, 0.3, 7850.0)

@@ -10,7 +10,7 @@ import pytest
 
 from restitution import Body, Contact, Grid, Pair, smooth, solve
 from restitution.collision import collide
-from restitution.contact.model_error import depth_difference, largest_difference, model_error
+from restitution.contact.checks.model_error import depth_difference, largest_difference, model_error
 from restitution.errors import CaseError
 from tolerance import approx
 

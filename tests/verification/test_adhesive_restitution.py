@@ -18,8 +18,8 @@ from restitution import (
     unloading_path,
 )
 from restitution.contact.checks.resolution import ADHESIVE_NODES, adhesive_nodes
-from restitution.contact.detachment import tension_limit
-from restitution.contact.separation import separate, separation_of
+from restitution.contact.jkr.detachment import tension_limit
+from restitution.contact.jkr.separation import separate, separation_of
 from restitution.theory import JKR
 from tolerance import approx
 

@@ -7,8 +7,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 from restitution import Body, Contact, Grid, Pair, solve, step
-from restitution.contact import adhesion, loading
+from restitution.contact import loading
 from restitution.contact.influence import half_space, inverse_half_space
+from restitution.contact.jkr import area as adhesion
 from restitution.numerics.convolution.operators import FreeConvolution
 from restitution.numerics.quadratic.minimise import BoundedQuadratic, minimise_quadratic
 from restitution.surfaces import generate_surface

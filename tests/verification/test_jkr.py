@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from restitution import Body, Contact, Grid, Pair, Surface, solve
+from restitution.contact.jkr.separation import separate, separation_of, unloading_curve
 from restitution.contact.loading import solve_without_work
-from restitution.contact.separation import separate, separation_of, unloading_curve
 from restitution.theory import JKR
 from tolerance import approx
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from restitution import Body, Contact, Grid, Pair, Surface, smooth, solve
-from restitution.contact.separation import separate, separation_of
+from restitution.contact.jkr.separation import separate, separation_of
 from restitution.theory import JKR, Kendall
 from tolerance import approx
 

@@ -25,11 +25,11 @@ from restitution.case.case_file import parse_case
 from restitution.case.derived import deepest_indentation
 from restitution.case.schema import UnloadingTable
 from restitution.collision import collide
+from restitution.contact.checks.model_error import model_error
 from restitution.contact.checks.resolution import resolves_contact
 from restitution.contact.contact import Contact
 from restitution.contact.loading import solve
-from restitution.contact.model_error import model_error
-from restitution.contact.prescribed_velocity import solve_at_velocity
+from restitution.contact.prescribed.velocity import solve_at_velocity
 from restitution.contact.state import State
 from restitution.laws.interpolation import RatioCurve
 from restitution.runs.companions import coarser_contact

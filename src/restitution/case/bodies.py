@@ -29,7 +29,7 @@ from restitution.contact.contact import (
     Yields,
     require_cohesive,
 )
-from restitution.contact.detachment import Detachment
+from restitution.contact.jkr.detachment import Detachment
 from restitution.errors import CaseError, shown
 
 # Keys of a body that the materials library can supply, with their SI units.

@@ -15,7 +15,7 @@ from restitution.case.quantities import Force, Length, Pressure
 from restitution.case.roughness import GeneratedRoughness, MeasuredRoughness, Roughness
 from restitution.case.schema import GridTable, ImpactTable, Series, Table, UnloadingTable
 from restitution.contact.bodies import Pair
-from restitution.contact.cohesive import coarsest_spacing
+from restitution.contact.cohesive.equilibrium import coarsest_spacing
 from restitution.contact.contact import Adhesion, Contact, smooth
 from restitution.errors import CaseError, SurfaceError
 from restitution.numerics.grid import Grid

@@ -18,7 +18,7 @@ from pydantic import (
 
 from restitution.case.quantities import ImpactAngle, Length, Spin, Velocity
 from restitution.collision import UnloadingMethod
-from restitution.contact.separation import RESTITUTION_ERROR
+from restitution.contact.jkr.separation import RESTITUTION_ERROR
 from restitution.errors import shown
 from restitution.numerics.grid import Grid
 

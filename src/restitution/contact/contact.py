@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from restitution.arguments import typed
 from restitution.contact.asperities import crest_gap_of, elongation_of
 from restitution.contact.bodies import Pair
-from restitution.contact.detachment import Detachment
+from restitution.contact.jkr.detachment import Detachment
 from restitution.display import quantity, summary_html, summary_text
 from restitution.errors import CaseError
 from restitution.numerics.box import Box
@@ -52,7 +52,7 @@ class Contact:
     infinite. The models of `plasticity` are
 
     * `expanding-cavity`: needs a yield strength. The pressure bound grows with deformation, see
-      `contact.cavity`.
+      `contact.plasticity.cavity`.
     * `equilibrium`: the yield pressure is a constant bound of the pressure. Under this bound, the
       pressure is in equilibrium with the deformed surface.
     * `truncated`: needs a yield pressure. The elastic pressure is truncated at the yield pressure

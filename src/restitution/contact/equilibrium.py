@@ -28,8 +28,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from restitution.contact.contact import Contact, whole_grid
-from restitution.contact.detachment import Mask
 from restitution.contact.influence import half_space, inverse_half_space, periodic_half_space
+from restitution.contact.jkr.detachment import Mask
 from restitution.contact.state import Array, State
 from restitution.errors import DomainError, NotConvergedError
 from restitution.numerics.box import NOWHERE, Box, bounding_box, shape_of, widen

@@ -19,12 +19,9 @@ from dataclasses import replace
 import numpy as np
 
 from restitution.arguments import typed
-from restitution.contact.adhesion import balances_are_reliable, grow_contact, unload_adhesive
-from restitution.contact.adhesive_work import pinning_error, work_by_balance, work_by_force
-from restitution.contact.cavity import bound_after, pressure_bound
 from restitution.contact.checks.edge import require_inside_grid
-from restitution.contact.cohesive import CohesiveState
-from restitution.contact.cohesive_path import load_cohesive, step_cohesive
+from restitution.contact.cohesive.equilibrium import CohesiveState
+from restitution.contact.cohesive.path import load_cohesive, step_cohesive
 from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import (
     RESIDUAL,
@@ -33,7 +30,10 @@ from restitution.contact.equilibrium import (
     solve_pressure,
 )
 from restitution.contact.influence import half_space
-from restitution.contact.plastic_work import plastic_work
+from restitution.contact.jkr.area import balances_are_reliable, grow_contact, unload_adhesive
+from restitution.contact.jkr.loading_work import pinning_error, work_by_balance, work_by_force
+from restitution.contact.plasticity.cavity import bound_after, pressure_bound
+from restitution.contact.plasticity.plastic_work import plastic_work
 from restitution.contact.state import Array, State
 from restitution.errors import CaseError
 from restitution.numerics.box import bounding_box, shape_of

@@ -10,10 +10,10 @@ import numpy as np
 from restitution.arguments import typed
 from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import RESIDUAL
+from restitution.contact.jkr.separation import RESTITUTION_ERROR, separate
 from restitution.contact.loading import solve, step
-from restitution.contact.prescribed_force import solve_at_force
-from restitution.contact.prescribed_velocity import solve_at_velocity
-from restitution.contact.separation import RESTITUTION_ERROR, separate
+from restitution.contact.prescribed.force import solve_at_force
+from restitution.contact.prescribed.velocity import solve_at_velocity
 from restitution.contact.state import State
 from restitution.errors import CaseError
 

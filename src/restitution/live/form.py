@@ -10,7 +10,7 @@ from restitution.case.materials import Material, materials
 from restitution.case.quantities import unit_factors
 from restitution.collision import UnloadingMethod
 from restitution.contact.contact import Adhesion, Approach, Plasticity
-from restitution.contact.detachment import Detachment
+from restitution.contact.jkr.detachment import Detachment
 from restitution.dem.export import CODES
 from restitution.display import quantity
 from restitution.surfaces.extend import Extension

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from restitution.collision import Collision
+from restitution.contact.checks.model_error import model_error
 from restitution.contact.checks.pull_off import pull_off_error
 from restitution.contact.checks.resolution import (
     adhesive_spacing,
@@ -12,7 +13,6 @@ from restitution.contact.checks.resolution import (
     resolves_adhesion,
     resolves_contact,
 )
-from restitution.contact.model_error import model_error
 from restitution.contact.state import State
 from restitution.results.schema import COLUMNS
 

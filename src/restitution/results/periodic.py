@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 from restitution.contact.checks.resolution import median_patch, resolves_contact
-from restitution.contact.cohesive import CohesiveState
+from restitution.contact.cohesive.equilibrium import CohesiveState
 from restitution.contact.perimeter import corrected_area
 from restitution.contact.state import Array, State
 from restitution.display import quantity, summary_html, summary_text

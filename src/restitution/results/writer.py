@@ -25,8 +25,8 @@ import numpy as np
 import xarray as xr
 
 from restitution.collision import Collision
+from restitution.contact.jkr.unloading_curve import complete_curve
 from restitution.contact.state import State
-from restitution.contact.unloading_curve import complete_curve
 from restitution.errors import OutputError, one_line
 from restitution.results.checksums import CHECKSUMS, checksums
 from restitution.results.coordinates import with_coordinates

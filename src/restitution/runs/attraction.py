@@ -18,7 +18,7 @@ import numpy as np
 
 from restitution.case.case import Case
 from restitution.collision import Collision, collide
-from restitution.contact.prescribed_velocity import solve_at_velocity
+from restitution.contact.prescribed.velocity import solve_at_velocity
 from restitution.display import quantity, with_error
 from restitution.errors import RestitutionError
 from restitution.runs.companions import Array, Companions, Curve, half_interval

@@ -22,7 +22,7 @@ from restitution.case.bodies import BodyTable, Yielding
 from restitution.case.case import Case
 from restitution.collision import UnloadingMethod, collide
 from restitution.contact.bodies import Pair
-from restitution.contact.cohesive import COMPANION
+from restitution.contact.cohesive.equilibrium import COMPANION
 from restitution.contact.contact import Contact, smooth
 from restitution.contact.loading import solve
 from restitution.contact.path import unloading_path

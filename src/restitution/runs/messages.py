@@ -10,6 +10,7 @@ from restitution.case.schema import FACTORS
 from restitution.contact.checks.edge import EdgeReachedError, edge_values, edges_in_words
 from restitution.contact.checks.finding import Code, Finding
 from restitution.contact.checks.inputs import doubtful, impossible
+from restitution.contact.checks.model_error import hysteresis_ratio
 from restitution.contact.checks.resolution import (
     NODES_PER_PATCH,
     NODES_PER_RADIUS,
@@ -17,9 +18,8 @@ from restitution.contact.checks.resolution import (
     predicted_radius,
 )
 from restitution.contact.checks.scans import scan_findings, too_steep
-from restitution.contact.cohesive import needed_spacing
+from restitution.contact.cohesive.equilibrium import needed_spacing
 from restitution.contact.contact import Contact
-from restitution.contact.model_error import hysteresis_ratio
 from restitution.display import counted, quantity
 from restitution.errors import (
     CaseError,

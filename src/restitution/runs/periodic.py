@@ -13,8 +13,8 @@ from restitution.case.case import Case
 from restitution.case.derived import deepest_indentation, derived_quantities
 from restitution.case.roughness import MeasuredRoughness
 from restitution.contact.checks.resolution import unresolved_patches
+from restitution.contact.prescribed.stiffness import normal_stiffness
 from restitution.contact.state import State
-from restitution.contact.stiffness import normal_stiffness
 from restitution.errors import NotConvergedError
 from restitution.numerics.convolution.device import current
 from restitution.numerics.kernels import instruction_set

@@ -16,7 +16,11 @@ from restitution.contact.checks.resolution import (
     median_patch,
     resolves_adhesion,
 )
-from restitution.contact.cohesive import coarsest_spacing, needed_spacing, resolves_range
+from restitution.contact.cohesive.equilibrium import (
+    coarsest_spacing,
+    needed_spacing,
+    resolves_range,
+)
 from restitution.contact.contact import Contact
 from restitution.contact.state import State
 from restitution.display import duration, quantity

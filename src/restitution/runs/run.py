@@ -17,10 +17,10 @@ from restitution.collision import Collision, collide
 from restitution.contact.checks.resolution import (
     unresolved_patches,
 )
-from restitution.contact.cohesive import CohesiveState
+from restitution.contact.cohesive.equilibrium import CohesiveState
 from restitution.contact.contact import FULL_CONSTRAINT, Contact
+from restitution.contact.jkr.unloading_curve import unloading_curve
 from restitution.contact.state import State
-from restitution.contact.unloading_curve import unloading_curve
 from restitution.errors import DomainError, RestitutionError
 from restitution.numerics.convolution.device import current
 from restitution.numerics.kernels import instruction_set

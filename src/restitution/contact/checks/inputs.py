@@ -14,7 +14,7 @@ from restitution.contact.checks.resolution import (
     resolution_findings,
 )
 from restitution.contact.checks.scans import scan_findings, too_steep
-from restitution.contact.cohesive import needed_spacing, resolves_range
+from restitution.contact.cohesive.equilibrium import needed_spacing, resolves_range
 from restitution.contact.contact import Contact
 from restitution.theory import Hertz, Kendall
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from restitution.contact.bodies import Pair
 from restitution.contact.checks.finding import Finding
-from restitution.contact.cohesive import needed_spacing
+from restitution.contact.cohesive.equilibrium import needed_spacing
 from restitution.contact.contact import Contact
 from restitution.contact.state import State
 from restitution.numerics.box import widen

@@ -6,11 +6,11 @@ import math
 from dataclasses import replace
 
 from restitution.arguments import typed
-from restitution.contact.cohesive_path import load_until
+from restitution.contact.cohesive.path import load_until
 from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import RESIDUAL
 from restitution.contact.loading import solve, solve_without_work
-from restitution.contact.prescribed_pressure import solve_at_pressure
+from restitution.contact.prescribed.pressure import solve_at_pressure
 from restitution.contact.state import State
 from restitution.errors import CaseError, DomainError, NotConvergedError
 from restitution.theory import Hertz

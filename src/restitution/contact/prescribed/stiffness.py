@@ -13,8 +13,8 @@ import math
 
 import numpy as np
 
-from restitution.contact.cohesive import CohesiveState, box_gap
-from restitution.contact.cohesive_law import stiffness as law_stiffness
+from restitution.contact.cohesive.equilibrium import CohesiveState, box_gap
+from restitution.contact.cohesive.law import stiffness as law_stiffness
 from restitution.contact.equilibrium import MAX_ITERATIONS, operators_of, require_converged
 from restitution.contact.influence import (
     foundation_compliance,

@@ -34,7 +34,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.contact.bodies import Pair
-from restitution.contact.cohesive_law import BoundedLaw, largest_softening, law_of, stiffness
+from restitution.contact.cohesive.law import BoundedLaw, largest_softening, law_of, stiffness
 from restitution.contact.contact import Contact, whole_grid
 from restitution.contact.influence import half_space, periodic_half_space
 from restitution.contact.state import Array, State

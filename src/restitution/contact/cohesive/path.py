@@ -16,9 +16,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from restitution.contact.cavity import bound_after, pressure_bound
 from restitution.contact.checks.edge import require_inside_grid
-from restitution.contact.cohesive import (
+from restitution.contact.cohesive.equilibrium import (
     CohesiveState,
     interacting_box,
     is_unique,
@@ -29,7 +28,8 @@ from restitution.contact.cohesive import (
     with_interaction,
 )
 from restitution.contact.contact import Contact
-from restitution.contact.plastic_work import plastic_work
+from restitution.contact.plasticity.cavity import bound_after, pressure_bound
+from restitution.contact.plasticity.plastic_work import plastic_work
 from restitution.contact.state import State
 from restitution.errors import NotConvergedError
 from restitution.numerics.box import reframe, shape_of, union

@@ -13,7 +13,7 @@ from itertools import dropwhile
 
 import numpy as np
 
-from restitution.contact.adhesion import balances_are_reliable
+from restitution.contact.jkr.area import balances_are_reliable
 from restitution.contact.state import Array, State
 from restitution.numerics.quadrature import integrate_curve
 

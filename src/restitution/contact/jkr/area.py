@@ -15,18 +15,18 @@ import numpy as np
 
 from restitution.contact.checks.resolution import adhesive_nodes
 from restitution.contact.contact import Contact
-from restitution.contact.detachment import (
-    Edge,
-    Mask,
-    released_beyond,
-    released_by_closure,
-    tension_limit,
-)
 from restitution.contact.equilibrium import (
     HeldNodes,
     candidate_box,
     separated_state,
     solve_pressure,
+)
+from restitution.contact.jkr.detachment import (
+    Edge,
+    Mask,
+    released_beyond,
+    released_by_closure,
+    tension_limit,
 )
 from restitution.contact.state import Array, State
 from restitution.numerics.box import Box, bounding_box, reframe, union, widen

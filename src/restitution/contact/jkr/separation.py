@@ -15,16 +15,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.contact.adhesion import (
+from restitution.contact.checks.edge import require_inside_grid
+from restitution.contact.cohesive.equilibrium import COARSEST, CohesiveState, cohesive_length
+from restitution.contact.cohesive.path import separate_cohesive
+from restitution.contact.jkr.area import (
     balances_are_reliable,
     pull_off_of_punch,
     unload_adhesive,
 )
-from restitution.contact.checks.edge import require_inside_grid
-from restitution.contact.cohesive import COARSEST, CohesiveState, cohesive_length
-from restitution.contact.cohesive_path import separate_cohesive
+from restitution.contact.jkr.unloading_curve import SharedUnloading, complete_curve, unloading_curve
 from restitution.contact.state import State
-from restitution.contact.unloading_curve import SharedUnloading, complete_curve, unloading_curve
 from restitution.errors import NotConvergedError
 from restitution.numerics.quadrature import integrate_curve
 

@@ -12,8 +12,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from restitution.contact.adhesion import balance_of
 from restitution.contact.contact import Contact
+from restitution.contact.jkr.area import balance_of
 from restitution.contact.state import State
 from restitution.numerics.quadrature import integrate_adaptively
 

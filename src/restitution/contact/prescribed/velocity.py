@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from restitution.arguments import typed
 from restitution.contact.checks.edge import require_inside_grid
-from restitution.contact.cohesive_path import load_until
+from restitution.contact.cohesive.path import load_until
 from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import RESIDUAL
 from restitution.contact.loading import solve_without_work, with_work, work_is_integrated
