@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 
 from restitution.collision import Collision
-from restitution.contact.checks.model_error import model_error
-from restitution.contact.checks.pull_off import pull_off_error
+from restitution.contact.checks.model_error import model_error, pull_off_error
 from restitution.contact.checks.resolution import (
     adhesive_spacing,
     median_patch,

@@ -13,8 +13,6 @@ import numpy as np
 import xarray as xr
 
 from restitution.contact.checks.resolution import median_patch, resolves_contact
-from restitution.contact.cohesive.equilibrium import CohesiveState
-from restitution.contact.perimeter import corrected_area
 from restitution.contact.state import Array, State
 from restitution.display import quantity, summary_html, summary_text
 from restitution.results.checksums import check_file
@@ -132,12 +130,12 @@ def periodic_row(state: State, stiffness: float) -> dict[str, float]:
         state.nominal_pressure,
         state.force,
         state.relative_area,
-        corrected_area(state) / math.prod(state.contact.grid.size),
+        state.corrected_area / math.prod(state.contact.grid.size),
         float(state.box_pressure.max(initial=0.0)),
         state.stored_energy,
         state.plastic_work,
         state.adhesive_work,
-        state.adhesive_loss if isinstance(state, CohesiveState) else 0.0,
+        state.adhesive_loss,
         state.loading_work,
         stiffness if math.isfinite(stiffness) else math.nan,
         state.contact_nodes,

@@ -22,9 +22,10 @@ from restitution.case.bodies import BodyTable, Yielding
 from restitution.case.case import Case
 from restitution.collision import UnloadingMethod, collide
 from restitution.contact.bodies import Pair
-from restitution.contact.cohesive.equilibrium import COMPANION
 from restitution.contact.contact import Contact, smooth
+from restitution.contact.interface import interface_of
 from restitution.contact.loading import solve
+from restitution.contact.models import COMPANION
 from restitution.contact.path import unloading_path
 from restitution.contact.state import State
 from restitution.errors import CaseError, DomainError, RestitutionError
@@ -133,8 +134,9 @@ def _curve_of(
         if contact != before:
             before, back, state = contact, [], None
         try:
-            # Only the path of a cohesive contact is long enough to be worth continuing.
-            state = solve(contact, depth, start=state if contact.cohesive else None)
+            # Only a loading path is long enough to be worth continuing.
+            follows = interface_of(contact).follows_path
+            state = solve(contact, depth, start=state if follows else None)
             if contact.adhesive and method == "path":
                 back = list(unloading_path(state, tolerance=tolerance, known=back))
             collision = collide(state, back or None, method=method, tolerance=tolerance)
@@ -291,7 +293,7 @@ def coarser_contact(contact: Contact) -> Contact:
     coarser = coarsen(contact.surface)
     if contact.surface.provenance.get("source") == "smooth":
         coarser = smooth(coarser.grid)
-    if contact.cohesive:
+    if not interface_of(contact).resolves_range(replace(contact, surface=coarser)):
         coarser = replace(coarser, provenance={**coarser.provenance, COMPANION: True})
     return replace(contact, surface=coarser)
 

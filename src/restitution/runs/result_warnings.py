@@ -31,16 +31,16 @@ def too_coarse_for_adhesion(
     factor = case.grid.factor
     unrefined = factor * max(grid.spacing)
     adhesive = [row for row in rows if not math.isnan(row["adhesive_spacing_m"])]
-    for found in unresolved_adhesion(
+    for finding in unresolved_adhesion(
         [row["max_indentation_m"] for row in adhesive],
         [unrefined / row["refine"] for row in adhesive],
         [row["adhesive_spacing_m"] for row in adhesive],
         unrefined,
     ):
-        nx, ny = (n * found["refine"] // factor for n in grid.nodes)
-        finer = max(1.0, found["spacing"] / found["needed"])
+        nx, ny = (n * finding.refine // factor for n in grid.nodes)
+        finer = max(1.0, finding.spacing / finding.needed)
         cost = duration(seconds * finer**_GROWTH)
-        yield f"{message(found)} ({nx} x {ny} nodes, about {cost})"
+        yield f"{message(finding)} ({nx} x {ny} nodes, about {cost})"
 
 
 def imprecise(rows: Sequence[Row], case: Case) -> Iterator[str]:

@@ -36,7 +36,7 @@ def smooth_curve(
     """
     pair, p_y = contact.pair, contact.hardness
     R, E_star = pair.radius, pair.contact_modulus
-    if contact.plasticity == "truncated" or contact.adhesive or not rows:
+    if not contact.plasticity.bounds_solve or contact.adhesive or not rows:
         return {}
     last = max(row["max_indentation_m"] for row in rows)
     # Smooth bodies reach the same loading work at a smaller depth than rough bodies, so the smooth

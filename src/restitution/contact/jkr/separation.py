@@ -1,78 +1,37 @@
-"""Unload an adhesive contact to separation, with step sizes that meet a tolerance.
+"""Unload a contact in the JKR limit to separation, with step sizes that meet a tolerance.
 
 In each step the bodies first retract with a fixed contact area, so the force is linear in the
-indentation. Then nodes are released at the new indentation. In continuous unloading, these nodes
-would be released earlier. The late release reduces the work that the contact returns. In each step,
-the lost work is half the jump of the force times the step.
+indentation. Then nodes are released, later than in continuous unloading. The late release reduces
+the work that the contact returns by half the jump of the force times the step.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from restitution.contact.checks.edge import require_inside_grid
-from restitution.contact.cohesive.equilibrium import COARSEST, CohesiveState, cohesive_length
-from restitution.contact.cohesive.path import separate_cohesive
 from restitution.contact.jkr.area import (
     balances_are_reliable,
+    jkr_of,
     pull_off_of_punch,
     unload_adhesive,
 )
 from restitution.contact.jkr.unloading_curve import SharedUnloading, complete_curve, unloading_curve
+from restitution.contact.models import RESTITUTION_ERROR, Separation
 from restitution.contact.state import State
 from restitution.errors import NotConvergedError
-from restitution.numerics.quadrature import integrate_curve
 
-RESTITUTION_ERROR = 0.002
 _ACCURACY = 1e-3  # tolerance of the solves as a fraction of the crack opening at the edge
 _STEPS_OF_RECOVERY = 8  # smallest number of steps into which the elastic recovery is divided
 
-# Smallest number of steps into which the pull-off displacement of a flat punch is divided. The
-# punch has the contact area of the present state.
-_STEPS_OF_TENSION = {"crack-closure": 32, "pohrt-popov": 16}
 _FINEST = 400  # the shortest step is the pull-off displacement of this punch divided by _FINEST
 _REFINEMENTS = (1, 2, 4)  # factors of the number of steps, tried in turn to meet the tolerance
 
-# If the error due to the steps is below this fraction of the surface energy (work of adhesion times
-# contact area), the error due to the grid is larger (see the module `collision`). Finer steps are
-# then useless.
-_SMALL = {"crack-closure": 0.005, "pohrt-popov": 0.0}
 _MOST_STEPS = 3000  # steps after which unloading counts as not converged
-
-# Late release of nodes loses work (see the top of this file). The unloading work is computed from
-# the forces after each release. To first order, this corrects the loss: the result is the work of
-# continuous unloading. The remaining error of the unloading work is estimated as the lost work
-# times the factor `_LATENESS`. In a comparison with ten times finer steps, the factor was below 0.1
-# with `crack-closure`. It was below 1/3 with `pohrt-popov`, which releases nodes in larger jumps.
-# The values here are 1.5 times 0.1 and 1/3.
-_LATENESS = {"crack-closure": 0.15, "pohrt-popov": 0.5}
-# For cohesive contacts, the tolerance of the energy balance of a step (`accuracy` in
-# `cohesive_path`), as a fraction of the tolerance of COR.
-_UNACCOUNTED = 0.1
-# Relative error of the adhesive loss of cohesive contacts on the coarsest grid that is allowed
-# (docs/adhesion.md).
-_GRID_LOSS = 0.05
-
-
-@dataclass(frozen=True)
-class Separation:
-    """Result of unloading to separation: energies (J), force (N) and indentation (m).
-
-    `error` is the error of `unloading_work`.
-    """
-
-    unloading_work: float
-    error: float
-    adhesive_loss: float
-    pull_off_force: float
-    separation_indentation: float
-    convolutions: int
-    steps: int
 
 
 def separate(
@@ -83,15 +42,13 @@ def separate(
 ) -> Iterator[State]:
     """Yield `state` and the states of unloading to separation, the last of them without contact.
 
-    If `state` is already without contact, it is the only state. `tolerance` is the error of the
-    coefficient of restitution that the steps may cause. If the estimated error is larger, unloading
-    is repeated with 2 and finally 4 times as many steps.
-
-    `known` are states of another unloading of the same contact, which began at a smaller
-    indentation; it can be empty. If no node has yielded, unloading ends as soon as its force agrees
-    with the force of `known` at the same indentation. The remaining states are then taken from
-    `known`. Raises `NotConvergedError` if the bodies do not separate.
+    If the estimated error of COR exceeds `tolerance`, unloading is repeated with 2 and finally 4
+    times as many steps. `known` are states of another unloading of the same contact, which began at
+    a smaller indentation. If no node has yielded, unloading ends as soon as its force agrees with
+    theirs, and the remaining states are taken from `known`. Raises `NotConvergedError` if the
+    bodies do not separate.
     """
+    model = jkr_of(state.contact)
     for finer in _REFINEMENTS:
         path = list(_unload(state, tolerance / finer, finer, known))
         separation = separation_of(path)
@@ -106,8 +63,8 @@ def separate(
         loading = min(half * state.work_error / given, 0.5 * tolerance)
         if half * separation.error / returned + loading <= tolerance:
             break
-        surface_energy = state.contact.work_of_adhesion * state.contact_area
-        if separation.error <= _SMALL[state.contact.detachment] * surface_energy:
+        surface_energy = model.work_of_adhesion * state.contact_area
+        if separation.error <= model.detachment.small_error * surface_energy:
             break
     yield from path
 
@@ -115,26 +72,19 @@ def separate(
 def _unload(
     state: State, tolerance: float, finer: int, known: Sequence[State] = ()
 ) -> Iterator[State]:
-    """Generate `state` and the states of unloading down to separation.
-
-    `finer` multiplies the smallest number of steps. `known` are states that may be reused, as in
-    `separate`. A cohesive contact uses only `tolerance` and `known`.
-    """
-    contact = state.contact
-    if isinstance(state, CohesiveState):
-        yield from separate_cohesive(state, accuracy=_UNACCOUNTED * tolerance, known=known)
-        return
+    """Yield the states of unloading; `finer` multiplies the smallest number of steps."""
+    contact, model = state.contact, jkr_of(state.contact)
     other = SharedUnloading.of(state, known)
     yield state
     if state.contact_nodes == 0:
-        return  # with `approach = "pull-increments"`, loading can end with all nodes released
+        return  # loading by `PullIncrements` can end with all nodes released
     recovery, allowed = _plan(state, tolerance)
     step = math.inf
     previous: State | None = None
     for _ in range(_MOST_STEPS):
         reach, punch_force = pull_off_of_punch(state)
         longest = recovery / (finer * _STEPS_OF_RECOVERY)
-        shortened = reach / (finer * _STEPS_OF_TENSION[contact.detachment])
+        shortened = reach / (finer * model.detachment.steps_of_tension)
         if state.force < 0.1 * abs(punch_force):
             longest = min(longest, shortened)
         elif previous is not None:
@@ -150,7 +100,9 @@ def _unload(
             state,
             at,
             first_guess=_predict(previous, state, step),
-            residual=_ACCURACY * contact.crack_opening / contact.residual_length(at),
+            residual=_ACCURACY
+            * model.crack_opening(contact)
+            / model.residual_length(contact.pair, at),
         )
         late = _late_force(new)
         if new.contact_nodes == 0:
@@ -173,37 +125,32 @@ def _unload(
     raise NotConvergedError(
         f"the bodies have not separated after {_MOST_STEPS} steps of unloading (indentation "
         f"{1e9 * state.indentation:.4g} nm, force {state.force:.3g} N); check work_of_adhesion "
-        f"({contact.work_of_adhesion:g} J/m2), or increase the tolerance of COR"
+        f"({model.work_of_adhesion:g} J/m2), or increase the tolerance of COR"
     )
 
 
 def separation_of(path: list[State]) -> Separation:
-    """Compute the energies of an unloading, the error of its work, and the pull-off force.
-
-    `path` contains the states in the order of unloading, such as those that `separate` yields.
-    """
+    """Compute the energies of an unloading, the error of its work, and the pull-off force."""
     depth = np.array([state.indentation for state in path])
     force = np.array([state.force for state in path])
     start, end = path[0], path[-1]
-    if isinstance(start, CohesiveState) and isinstance(end, CohesiveState):
-        return _cohesive_separation(start, end, path)
     trapezoid = -float(np.trapezoid(force, depth))
     late = -float(np.dot([_late_force(state) for state in path[1:]], np.diff(depth)))
     # The energy that the bodies lose along the path must equal the work of the force. In each step,
     # the force falls linearly and then jumps up when nodes are released. `trapezoid` uses the force
     # after the jump instead of the force before it, so it exceeds the work by `late`.
     unaccounted = (start.loading_work - end.loading_work) - (trapezoid - late)
-    curve = unloading_curve(path)
-    found = curve.work()
+    curve, lateness = unloading_curve(path), jkr_of(start.contact).detachment.lateness
+    by_curve = curve.work()
     # Unloading returns at most the elastic energy.
-    work = min(found, start.stored_energy) if curve.balanced else found
+    work = min(by_curve, start.stored_energy) if curve.balanced else by_curve
     # Unloading work from the curve minus unloading work from the forces of the states.
     scatter = work - trapezoid if curve.balanced else 0.0
     return Separation(
         unloading_work=work,
-        error=abs(found - curve.halved().work())
-        + (found - work)
-        + (0.0 if curve.balanced else _LATENESS[start.contact.detachment] * abs(late))
+        error=abs(by_curve - curve.halved().work())
+        + (by_curve - work)
+        + (0.0 if curve.balanced else lateness * abs(late))
         + abs(unaccounted),
         adhesive_loss=start.adhesive_work - end.adhesive_work - late - scatter,
         pull_off_force=max(0.0, curve.largest_tension()),
@@ -213,69 +160,16 @@ def separation_of(path: list[State]) -> Separation:
     )
 
 
-def _cohesive_separation(start: CohesiveState, end: CohesiveState, path: list[State]) -> Separation:
-    """Compute the result of a cohesive `path` from the state `start` to the state `end`.
-
-    The bodies are assumed to separate reversibly after the state `end`.
-    """
-    lost = end.adhesive_loss - start.adhesive_loss
-    plastic = end.plastic_work - start.plastic_work
-    fineness = max(start.contact.grid.spacing) / (COARSEST * cohesive_length(start.contact))
-    work = start.potential_energy - lost - plastic
-    depth, force = ([getattr(state, key) for state in path] for key in ("indentation", "force"))
-    by_force = end.potential_energy - integrate_curve(depth, force)
-    steps = max(abs(end.work_error - start.work_error), abs(by_force - work))
-    last = max((k for k, state in enumerate(path) if state.contact_nodes), default=0)
-    return Separation(
-        unloading_work=work,
-        error=steps + _GRID_LOSS * fineness**2 * lost,
-        adhesive_loss=lost,
-        pull_off_force=_largest_tension(path),
-        separation_indentation=path[min(last + 1, len(path) - 1)].indentation,
-        convolutions=sum(state.convolutions for state in path[1:]),
-        steps=len(path) - 1,
-    )
-
-
-def _largest_tension(path: list[State]) -> float:
-    """Largest tension (N) of a cohesive path.
-
-    It is the vertex of the parabola through the state of largest tension and its two neighbours. If
-    the force jumps between these states, it is the tension of the state in the middle.
-    """
-    force = np.array([state.force for state in path])
-    k = int(force.argmin())
-    largest = max(0.0, -float(force[k]))
-    around = path[k - 1 : k + 2]
-    if not 0 < k < len(path) - 1 or len({_jumps(state) for state in around}) > 1:
-        return largest
-    depth = np.array([state.indentation for state in around]) - path[k].indentation
-    scale = float(np.abs(depth).max())
-    a, b, c = np.polyfit(depth / scale, force[k - 1 : k + 2], 2)
-    return max(largest, float(b * b / (4 * a) - c)) if a > 0 else largest
-
-
-def _jumps(state: State) -> int:
-    return state.jumps if isinstance(state, CohesiveState) else 0
-
-
 def _late_force(state: State) -> float:
-    """Error of the mean force (N) of a step, because nodes are released only at its end.
-
-    It is half the jump of the force due to these releases.
-    """
+    """Error of the mean force (N) of a step, because nodes are released only at its end."""
     assert state.force_before_release is not None  # `unload_adhesive` always sets it
     return 0.5 * (state.force - state.force_before_release)
 
 
 def _plan(state: State, tolerance: float) -> tuple[float, float]:
-    """Estimate the elastic recovery (m), and choose the target value of `_late_force` (N).
-
-    Elastic recovery is the decrease of the indentation until separation. If `_late_force` has the
-    target value in all steps, the error of the unloading work meets the `tolerance` of COR. The
-    target value is infinite if late release does not affect the unloading work.
-    """
-    stored, adhesion = state.stored_energy, state.contact.work_of_adhesion * state.contact_area
+    """Estimate the elastic recovery (m), and the `_late_force` (N) that meets the `tolerance`."""
+    model = jkr_of(state.contact)
+    stored, adhesion = state.stored_energy, model.work_of_adhesion * state.contact_area
     # The elastic recovery is estimated in two ways, and the smaller value is used. The first
     # estimate belongs to a flat punch with the same area and stored energy. The second one belongs
     # to a Hertz-like contact with the same force and stored energy.
@@ -290,19 +184,18 @@ def _plan(state: State, tolerance: float) -> tuple[float, float]:
     restitution = math.sqrt(max(stored - adhesion, 0.0) / work)
     # With the loading work W_l, dCOR = dW/(2 W_l COR). If dCOR is the tolerance, the allowed error
     # of the work is dW = 2 W_l COR dCOR. Half of dW is reserved for the error of the loading work.
-    allowed = 1.0 * tolerance * max(restitution, 0.05) * work
+    allowed = tolerance * max(restitution, 0.05) * work
     # Where balances (G equals the work of adhesion) are reliable, the work is computed from them. A
     # late release of nodes then does no harm, so `_late_force` needs no limit.
     if balances_are_reliable(state):
         return recovery, math.inf
-    return recovery, allowed / (_LATENESS[state.contact.detachment] * recovery)
+    return recovery, allowed / (model.detachment.lateness * recovery)
 
 
 def _predict(previous: State | None, state: State, step: float) -> NDArray[np.float64] | None:
     """Extrapolate the pressure at the nodes in contact linearly, by a `step` (m) of unloading.
 
-    The result is a first guess. It improves the accuracy rather than the speed: the tolerance of a
-    solve is large, so a better first guess gives a result nearer to the solution.
+    The tolerance of a solve is large, so a better first guess gives a more accurate result.
     """
     if previous is None:
         return None

@@ -1,73 +1,41 @@
-"""The pressure bound of the model `expanding-cavity`: it grows from first yield to full plasticity.
+"""A pressure bound that grows from first yield to full plasticity, as in an expanding cavity.
 
-When a contact begins to yield, its largest pressure is 1.6 Y, where Y is the yield strength in a
-tensile test. In a fully plastic contact the pressure is about 3 Y, because the surrounding material
-constrains the plastic zone. In between, the pressure grows with the logarithm of the strain, as in
-an expanding cavity (Johnson 1970, J. Mech. Phys. Solids 18, 115–126; Johnson 1985, §6.3):
+Johnson (1970, J. Mech. Phys. Solids 18, 115–126; 1985, §6.3); docs/method.md:
 
-    bound = Y · min(c₀ + c₁ ln(m/(c₀ Y)), c₂).
+    bound = Y · min(c₀ + c₁ ln(m/(c₀ Y)), c₂),   m = p_e(2δ)/√2 · [2(δ − h_c)/(2δ − h_c)]^s.
 
-c₀ is the ratio of the largest pressure to Y at first yield of a sphere (`yield_coefficient` in
-`theory`). c₁ and c₂ are fitted constants. m is an elastic pressure that is proportional to the
-strain. For a sphere of radius R at the indentation δ, m is the largest pressure of an elastic
-contact at δ. This pressure is (2/π) E*a/R with the elastic contact radius a = √(Rδ). At a node of a
-rough surface, m is
-
-    m = m₀ [2(δ − h_c)/(2δ − h_c)]^s,    m₀ = p_e(2δ)/√2.
-
-p_e(2δ) is the pressure at the same node between *elastic* bodies of this shape at twice the
-indentation. The factor 2 is that of a sphere: an elastic sphere at 2δ has the contact radius of a
-plastic sphere at δ. The divisor √2 is the ratio of the largest pressures of elastic spheres at 2δ
-and at δ. While asperities are in separate contact, their slope determines m. Once the asperity
-contacts have merged, the slope of the bodies determines m. The bound depends only on the
-indentation. Therefore, as with a constant bound, the state does not depend on the loading path.
-
-The fraction in brackets corrects the depth of an asperity whose crest has an initial gap h_c. Such
-an asperity is deformed by δ − h_c, so p_e should belong to a deformation of 2(δ − h_c). At the
-indentation 2δ, however, the asperity is deformed by 2δ − h_c. Without the correction, COR is up to
-6 % too high just after a new asperity has come into contact. The fraction is 1 for the asperity
-that touches first. The exponent s decreases from 1 for separate asperities to 0 for merged ones:
-
-    s = max(1 − (p_H/m₀)^1.5, 0).
-
-p_H is the Hertz pressure at this node between smooth bodies under the same force as the elastic
-rough bodies at the indentation 2δ. Where p_H ≥ m₀, the asperity contacts have merged.
-
-A ridge yields in plane strain. Its plastic flow is therefore more constrained than that of a round
-asperity. For ridges, the coefficients become
-
-    c₀ (1 + 0.11 q),  c₁ (1 + 1.1 q),  c₂ (1 + 0.25 q),    q = (1 − κ₂/κ₁)² s.
-
-κ₂ and κ₁ are the smaller and the larger curvature of the gap at the node. q is 1 for a ridge in
-separate contact, and 0 for round asperities and for merged contacts. At q = 1, the factor of c₀ is
-1.11. This is the ratio of the pressures at first yield of a cylinder and of a sphere, 1.79 Y and
-1.61 Y for ν = 0.3 (Johnson 1985, §§4.2, 4.4).
-
-All other constants were fitted to finite element results (docs/validation.md lists the constants
-and their range). c₂ is above 3, because it also accounts for the pile-up around a deep contact. The
-model does not compute this pile-up. The bound reaches c₂ Y at the largest indentation of the finite
-element results.
-
-If the material hardens with a tangent modulus, a flow stress replaces the factor Y of the bound.
-The flow stress depends on the plastic strain. This strain is the increase, since first yield, of
-the representative strain 0.2 a/R (Tabor 1951), with a/R = π m/(2E*).
+p_e(2δ) is the pressure at the node between *elastic* bodies at twice the indentation, h_c the gap at
+the crest of the asperity, and s = max(1 − (p_H/m₀)^1.5, 0) is 1 for separate asperities and 0 where
+they have merged (p_H: Hertz pressure of the smooth bodies under the same force). On a ridge, c₀, c₁
+and c₂ are larger by 0.11 q, 1.1 q and 0.25 q with q = (1 − κ₂/κ₁)² s. With hardening, a flow stress
+replaces the factor Y; its strain is the increase of 0.2 a/R since first yield (Tabor 1951).
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, replace
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.arguments import typed
+from restitution.contact.bodies import Pair
 from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import elastic_pressure
+from restitution.contact.models import Load, Plasticity, set_field
 from restitution.contact.state import Array, State
+from restitution.display import quantity
+from restitution.errors import CaseError
 from restitution.numerics.box import Box
 from restitution.numerics.read_only import freeze
-from restitution.theory import Hertz
+from restitution.theory import Hertz, yield_coefficient
 
 Nodes = tuple[NDArray[np.intp], ...]  # indices of rows and columns
+
+# Ratio of pressure to yield strength of a fully plastic contact (Tabor 1951).
+FULL_CONSTRAINT = 2.8
 
 # Coefficients of the ratio of the pressure bound to the yield strength, for round asperities:
 # growth with the logarithm of the strain (c₁), and upper limit (c₂).
@@ -84,16 +52,154 @@ _DEPTH_FACTOR = 2.0  # the elastic pressure is computed at this multiple of the 
 _RESIDUAL_FACTOR, _LARGEST_RESIDUAL = 5e3, 5e-5
 _TABOR = 0.2  # representative strain divided by a/R (contact radius a, radius R of the sphere)
 
+# In each step, the pressure bound of a node grows. The error of the plastic work is a fraction of
+# this growth times the plastic displacement of the step. The fraction is _RULE_ERROR for nodes that
+# had yielded before the step, and _NEW_ERROR for nodes that begin to yield in the step. Both
+# fractions come from a comparison with steps that are 11 times finer. At nodes that begin to yield,
+# the mean of the bound during yielding is the bound before the step plus _NEW times the growth.
+_RULE_ERROR, _NEW, _NEW_ERROR = 0.1, 0.8, 0.25
+# The plastic work is a sum over depths. The first depth is _SHALLOW times the indentation, and each
+# further depth is at most _RATIO times the one before, because the error of a step holds up to this
+# ratio.
+_RATIO, _SHALLOW = 1.42, 0.2
+
+# Values of the steepness ψ = E* S/Y of the asperities (rms slope S), and the largest relative
+# difference of COR from finite elements (docs/validation.md) at each of these values.
+_STEEPNESS, _GROWING = (0.0, 4.0, 6.0), (0.03, 0.035, 0.045)
+# Values of the COR due to plasticity alone, and a factor of the largest difference for each of them.
+_NEAR_ONE = (0.94, 0.98, 1.0), (1.0, 0.5, 0.2)
+
+
+@typed
+@dataclass(frozen=True)
+class ExpandingCavity(Plasticity):
+    """The pressure bound grows with deformation, as in an expanding cavity.
+
+    Attributes:
+        yield_strength: Yield strength Y of a tensile test (Pa).
+        tangent_modulus: Slope of the stress-strain curve of a tensile test after yield (Pa).
+
+    Raises:
+        CaseError: A value is impossible.
+
+    Source:
+        K. L. Johnson, J. Mech. Phys. Solids 18 (1970) 115–126.
+    """
+
+    yield_strength: float
+    tangent_modulus: float = 0.0
+
+    label = "expanding-cavity"
+    grows = True
+    for_periodic = False
+
+    def __post_init__(self) -> None:
+        set_field(self, "yield_strength", "Pa")
+        object.__setattr__(self, "tangent_modulus", float(self.tangent_modulus))
+
+    def check(self, pair: Pair) -> None:
+        softest = min(body.youngs_modulus for body in (pair.first, pair.second))
+        if not 0 <= self.tangent_modulus < softest:
+            raise CaseError(
+                f"tangent_modulus: {self.tangent_modulus:g} Pa is not between 0 and Young's "
+                f"modulus, {softest:g} Pa"
+            )
+
+    @property
+    def hardness(self) -> float:
+        """Pressure of a fully plastic contact, 2.8 Y (Pa)."""
+        return FULL_CONSTRAINT * self.yield_strength
+
+    def describe(self) -> str:
+        return f"yield strength {quantity(self.yield_strength, 'Pa')} ({self.label})"
+
+    def first_yield_pressure(self, pair: Pair) -> float:
+        """Largest pressure at which smooth bodies stay elastic (Pa).
+
+        Source: R. L. Jackson, I. Green, J. Tribology 127 (2005) 343–354, at the mean Poisson's
+        ratio of the bodies.
+        """
+        nu = 0.5 * (pair.first.poissons_ratio + pair.second.poissons_ratio)
+        return float(yield_coefficient(nu)) * self.yield_strength
+
+    def onset_pressure(self, pair: Pair) -> float:
+        return self.first_yield_pressure(pair)
+
+    def hardening_modulus(self, pair: Pair) -> float:
+        """Slope E_t/(1 − E_t/E) of the flow stress against *plastic* strain (Pa)."""
+        E = min(body.youngs_modulus for body in (pair.first, pair.second))
+        return self.tangent_modulus / (1 - self.tangent_modulus / E)
+
+    def bound(
+        self, contact: Contact, indentation: float, residual: float
+    ) -> tuple[Array | float, int]:
+        return yield_bound(contact, max(indentation, 0.0), residual)
+
+    def bound_at(self, pair: Pair, measure: Array, ridge: Array | float = 0.0) -> Array:
+        """Bound (Pa) where the value m of the module docstring is `measure` (Pa).
+
+        `ridge` is q, from 0 (round asperity) to 1 (ridge).
+        """
+        Y, hardening = self.yield_strength, self.hardening_modulus(pair)
+        c_0 = self.first_yield_pressure(pair) / Y * (1 + _RIDGE_ONSET * ridge)
+        beyond = np.maximum(measure / (c_0 * Y), 1.0)
+        factor = np.minimum(
+            c_0 + GROWTH * (1 + _RIDGE_GROWTH * ridge) * np.log(beyond),
+            LARGEST * (1 + _RIDGE_LARGEST * ridge),
+        )
+        flow_stress: Array | float = Y
+        if hardening > 0:
+            strain = _TABOR * math.pi / 2 * (beyond - 1) * c_0 * Y / pair.contact_modulus
+            flow_stress = Y + hardening * strain
+        return factor * flow_stress
+
+    def work(self, before: State | None, after: State) -> tuple[float, float]:
+        """Plastic work (J) of a step to at most 1.42 times the depth, and its error (J).
+
+        Where nodes had yielded before, the plastic displacement is taken as linear in the
+        indentation δ and the bound as linear in ln δ. The work per area of the displacement Δu is
+        then Δu [b₁ + (b₂ − b₁) (δ₂/(δ₂ − δ₁) − 1/ln(δ₂/δ₁))].
+        """
+        contact, box = after.contact, after.box
+        given, begun = after.plastic_displacement[box], np.asarray(contact.first_yield_pressure)
+        old, ratio = np.zeros(1, dtype=bool), math.inf
+        if before is not None:
+            begun = _on(before.bound, box)
+            old = before.plastic_displacement[box] > 0
+            given = given - before.plastic_displacement[box]
+            if before.indentation > 0:
+                ratio = after.indentation / before.indentation
+        share = ratio / (ratio - 1) - 1 / math.log(ratio) if 1 < ratio < math.inf else 0.5
+        area = contact.grid.cell_area
+        whole = float(np.sum(given * begun)) * area
+        growth = given * (_on(after.bound, box) - begun)
+        on, new = (float(np.sum(growth, where=nodes)) * area for nodes in (old, ~old))
+        return whole + share * on + _NEW * new, _RULE_ERROR * abs(on) + _NEW_ERROR * abs(new)
+
+    def with_loading_work(self, state: State, start: State | None, load: Load) -> State:
+        contact, indentation = state.contact, state.indentation
+        first = _SHALLOW * indentation if start is None else start.indentation
+        steps = max(1, math.ceil(math.log(indentation / first) / math.log(_RATIO) - 1e-9))
+        depths = first * (indentation / first) ** (np.arange(steps) / steps)
+        work, error, convolutions, before = 0.0, 0.0, 0, start
+        if start is not None:
+            work, error, depths = start.plastic_work, start.work_error, depths[1:]
+        for depth in (*map(float, depths), indentation):
+            now = state if depth == indentation else load(contact, depth, None)
+            convolutions += now.convolutions
+            increment, increment_error = self.work(before, now)
+            work, error, before = work + increment, error + increment_error, now
+        return replace(state, plastic_work=work, work_error=error, convolutions=convolutions)
+
+    def difference(self, contact: Contact, restitution: float) -> float:
+        steepness = contact.pair.contact_modulus * contact.slope / self.yield_strength
+        return float(
+            np.interp(steepness, _STEEPNESS, _GROWING) * np.interp(restitution, *_NEAR_ONE)
+        )
+
 
 def yield_bound(contact: Contact, indentation: float, residual: float) -> tuple[Array, int]:
-    """Return the pressure bound (Pa) at `indentation` (m), and the number of convolutions it took.
-
-    The bound is a read-only array of the shape of the grid. It is computed from the pressure of an
-    elastic solve. `residual` is the tolerance of the later solve under this bound. The elastic
-    solve has a larger tolerance, because the bound depends only on the logarithm of the elastic
-    pressure. Raises `NotConvergedError`. If the elastic contact reaches the edge of the grid, no
-    error is raised.
-    """
+    """Compute the bound (Pa) at `indentation` (m) from an elastic solve, as `Plasticity.bound`."""
     bound = np.full(contact.grid.nodes, contact.first_yield_pressure)
     tolerance = min(_RESIDUAL_FACTOR * residual, _LARGEST_RESIDUAL)
     pressure, box, convolutions = elastic_pressure(contact, _DEPTH_FACTOR * indentation, tolerance)
@@ -107,58 +213,15 @@ def yield_bound(contact: Contact, indentation: float, residual: float) -> tuple[
     at_apart = tuple(index[apart] for index in nodes)
     depth_ratio = _depth_ratio(contact.crest_gap[box][at_apart], indentation)
     ridge = contact.elongation[box][at_apart] * separate[apart]
-    bounds = bound_of(contact, measure)
-    bounds[apart] = bound_of(contact, measure[apart] * depth_ratio ** separate[apart], ridge)
+    model, pair = cast(ExpandingCavity, contact.plasticity), contact.pair
+    bounds = model.bound_at(pair, measure)
+    bounds[apart] = model.bound_at(pair, measure[apart] * depth_ratio ** separate[apart], ridge)
     bound[box][nodes] = bounds
     return freeze(bound), convolutions
 
 
-def pressure_bound(
-    contact: Contact, indentation: float, residual: float
-) -> tuple[Array | float, int]:
-    """Return the pressure bound (Pa), and the number of convolutions that the bound took."""
-    if contact.grows:
-        return yield_bound(contact, max(indentation, 0.0), residual)
-    return contact.yield_pressure, 0
-
-
-def bound_after(state: State, indentation: float, residual: float) -> tuple[Array | float, int]:
-    """Return the results of `pressure_bound` for a step from `state` to `indentation`.
-
-    The bound of a node never falls below its value in `state`.
-    """
-    if indentation <= state.indentation:
-        return state.bound, 0
-    limit, convolutions = pressure_bound(state.contact, indentation, residual)
-    if isinstance(limit, np.ndarray):
-        limit = freeze(np.maximum(limit, state.bound))
-    return limit, convolutions
-
-
-def bound_of(contact: Contact, measure: Array, ridge: Array | float = 0.0) -> Array:
-    """Return the pressure bound (Pa) for `measure`, the value m (Pa) of the module docstring.
-
-    `ridge` describes the shape of the asperity, from 0 (round) to 1 (ridge).
-    """
-    Y = contact.yield_strength
-    c_0 = contact.first_yield_pressure / Y * (1 + _RIDGE_ONSET * ridge)
-    beyond = np.maximum(measure / (c_0 * Y), 1.0)
-    factor = np.minimum(
-        c_0 + GROWTH * (1 + _RIDGE_GROWTH * ridge) * np.log(beyond),
-        LARGEST * (1 + _RIDGE_LARGEST * ridge),
-    )
-    flow_stress: Array | float = Y
-    if contact.hardening_modulus > 0:
-        strain = _TABOR * math.pi / 2 * (beyond - 1) * c_0 * Y / contact.pair.contact_modulus
-        flow_stress = Y + contact.hardening_modulus * strain
-    return factor * flow_stress
-
-
 def _depth_ratio(crest_gap: Array, indentation: float) -> Array:
-    """Return the depth correction 2(δ − h_c)/(2δ − h_c) of the asperity at each node.
-
-    h_c is the `crest_gap` (m), and δ the `indentation` (m). The result is 0 where δ < h_c.
-    """
+    """Depth correction 2(δ − h_c)/(2δ − h_c) of the asperity at each node; 0 where δ < h_c."""
     depth = np.maximum(indentation - crest_gap, 0)
     return _DEPTH_FACTOR * depth / (_DEPTH_FACTOR * indentation - crest_gap)
 
@@ -168,3 +231,7 @@ def _smooth_pressure(contact: Contact, box: Box, nodes: Nodes, force: float) -> 
     smooth = Hertz(contact.pair.radius, contact.pair.contact_modulus)
     x, y = contact.grid.x[box[0]] - contact.apex[0], contact.grid.y[box[1]] - contact.apex[1]
     return smooth.pressure(np.hypot(x[nodes[0]], y[nodes[1]]), smooth.indentation(force))
+
+
+def _on(bound: Array | float, box: Box) -> Array:
+    return np.asarray(bound) if np.ndim(bound) == 0 else np.asarray(bound)[box]
