@@ -18,7 +18,9 @@ from compare import OURS, PROGRAMS, RESIDUAL, ROOT, Worker, compare, power, shor
 from problems import SPACING, Problem
 from unit import machine, today
 
+from restitution.case.models import plasticity_of
 from restitution import Body, Contact, Grid, Pair, generate_surface, solve_at_pressure
+from restitution.contact.plasticity.bound import ConstantBound
 from restitution.surfaces import rms_slope
 
 WALL = Body(radius=math.inf, youngs_modulus=210e9, poissons_ratio=0.25)
@@ -82,7 +84,12 @@ def problems(n: int) -> list[Problem]:
     E_star = FLAT.contact_modulus
     unit, found = E_star * rms_slope(surface), []
     for name, pressure, limit in CASES:
-        contact = Contact(FLAT, surface, limit * unit, periodic=True)
+        contact = Contact(
+            FLAT,
+            surface,
+            plasticity=plasticity_of(ConstantBound(limit * unit), None),
+            periodic=True,
+        )
         state = solve_at_pressure(contact, pressure * unit, residual=1e-10)
         found.append(
             Problem(

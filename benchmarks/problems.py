@@ -14,7 +14,9 @@ from pathlib import Path
 import numpy as np
 import scipy.fft
 
+from restitution.case.models import plasticity_of
 from restitution import Body, Contact, Grid, Pair, generate_surface, smooth, solve
+from restitution.contact.plasticity.bound import ConstantBound
 
 SPACING = 0.25e-6
 FORCE = 1e-6  # largest relative error of a prescribed force
@@ -77,7 +79,11 @@ def all_problems(n: int) -> list[Problem]:
     cases = (
         ("elastic smooth", Contact(PAIR, flat), 10e-6),
         ("elastic rough", Contact(PAIR, rough), 10e-6),
-        ("plastic smooth", Contact(PAIR, flat, yield_pressure=750e6), 20e-6),
+        (
+            "plastic smooth",
+            Contact(PAIR, flat, plasticity=plasticity_of(ConstantBound(750e6), None)),
+            20e-6,
+        ),
     )
     return [_problem(name, contact, a**2 / PAIR.radius) for name, contact, a in cases]
 

@@ -11,6 +11,7 @@ material.
 import matplotlib.pyplot as plt
 import numpy as np
 
+from restitution.case.models import plasticity_of
 import restitution as rs
 
 velocity = 0.1
@@ -28,7 +29,10 @@ for radius in sizes / 2:
     ]
     found = [
         rs.collide(
-            rs.solve_at_velocity(rs.Contact(pair, one, yield_strength=290e6), velocity)
+            rs.solve_at_velocity(
+                rs.Contact(pair, one, plasticity=plasticity_of(rs.ExpandingCavity(290e6), None)),
+                velocity,
+            )
         ).restitution
         for one in surfaces
     ]

@@ -11,6 +11,7 @@ interval.
 import matplotlib.pyplot as plt
 import numpy as np
 
+from restitution.case.models import plasticity_of
 import restitution as rs
 
 steel = rs.Body(radius=0.5e-3, youngs_modulus=193e9, poissons_ratio=0.29, density=8000)
@@ -23,7 +24,7 @@ for seed in range(12):
     surface = rs.generate_surface(
         grid, kind="gaussian", rms=0.2e-6, correlation_length=5e-6, seed=seed
     )
-    contact = rs.Contact(pair, surface, yield_strength=290e6)
+    contact = rs.Contact(pair, surface, plasticity=plasticity_of(rs.ExpandingCavity(290e6), None))
     states = rs.loading_path(contact, velocities=velocities)
     curves.append([rs.collide(state).restitution for state in states])
 

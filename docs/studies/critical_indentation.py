@@ -10,7 +10,9 @@ import numpy as np
 from scipy.stats import linregress, t
 from shared import PAIR, STEEL, write_image, write_table
 
+from restitution.case.models import plasticity_of
 from restitution import Contact, Grid, collide, generate_surface, smooth, solve
+from restitution.contact.plasticity.bound import ConstantBound
 from restitution.plots.figure import (
     DASHED,
     PALETTE,
@@ -72,7 +74,9 @@ def fit(length, x, y):
 
 def main():
     """Compute, print and draw."""
-    reference = restitutions(Contact(PAIR, smooth(GRID), 750e6))
+    reference = restitutions(
+        Contact(PAIR, smooth(GRID), plasticity=plasticity_of(ConstantBound(750e6), None))
+    )
     table = []
     for length in LENGTHS:
         for rms in ROUGHNESS:
@@ -80,7 +84,13 @@ def main():
                 surface = generate_surface(
                     GRID, kind="gaussian", rms=rms, correlation_length=length, seed=seed
                 )
-                off = restitutions(Contact(PAIR, surface, 750e6)) / reference - 1
+                off = (
+                    restitutions(
+                        Contact(PAIR, surface, plasticity=plasticity_of(ConstantBound(750e6), None))
+                    )
+                    / reference
+                    - 1
+                )
                 table.append(
                     {
                         "correlation_length_m": length,

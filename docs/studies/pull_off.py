@@ -12,6 +12,7 @@ import numpy as np
 from shared import write_table
 
 from restitution import Body, Contact, Grid, Pair, Surface, solve
+from restitution.case.models import adhesion_of
 from restitution.contact.jkr.separation import separate, separation_of
 from restitution.contact.loading import step
 from restitution.theory import JKR
@@ -37,7 +38,11 @@ def sphere(nodes_over_pull_off_radius, offset, detachment, depth, approach="hert
     shifted = (x - offset[0] * h) ** 2 + (y - offset[1] * h) ** 2
     height = (x * x + y * y - shifted) / (2 * pair.radius)
     surface = Surface(height, grid, {"source": "shifted apex"})
-    contact = Contact(pair, surface, work_of_adhesion=W, approach=approach, detachment=detachment)
+    contact = Contact(
+        pair,
+        surface,
+        adhesion=adhesion_of(work_of_adhesion=W, approach=approach, detachment=detachment),
+    )
     return contact, deep
 
 

@@ -12,8 +12,10 @@ from __future__ import annotations
 import numpy as np
 from shared import PAIR, write_image, write_table
 
+from restitution.case.models import plasticity_of
 from restitution import Contact, Grid, collide, generate_surface, refine, solve
 from restitution.contact.checks.resolution import NODES_PER_PATCH, median_patch
+from restitution.contact.plasticity.bound import ConstantBound
 from restitution.plots.figure import GREY, Axis, Band, Chart, Figure, Mark, Points
 from restitution.runs.convergence import discretisation
 
@@ -33,7 +35,12 @@ def rows():
     for number, kind in enumerate(SURFACES):
         for seed in SEEDS:
             coarse = generate_surface(GRID, seed=seed, **kind)
-            contacts = {k: Contact(PAIR, refine(coarse, k), 750e6) for k in FACTORS}
+            contacts = {
+                k: Contact(
+                    PAIR, refine(coarse, k), plasticity=plasticity_of(ConstantBound(750e6), None)
+                )
+                for k in FACTORS
+            }
             # All grids contain the coarse nodes, where the gaps differ only by the shift of first
             # touch.
             finest = contacts[FACTORS[-1]].gap[:: FACTORS[-1], :: FACTORS[-1]]

@@ -9,8 +9,10 @@ from __future__ import annotations
 import numpy as np
 from shared import PAIR, write_image, write_table
 
+from restitution.case.models import plasticity_of
 from restitution import Contact, Grid, collide, generate_surface, refine, solve
 from restitution.contact.checks.resolution import median_patch, resolves
+from restitution.contact.plasticity.bound import ConstantBound
 from restitution.plots.cor import cor_axis
 from restitution.plots.figure import PALETTE, SYMBOLS, Axis, Chart, Figure, Mark, Points
 
@@ -29,7 +31,9 @@ def rows():
                 GRID, kind="gaussian", rms=rms, correlation_length=2e-6, seed=seed
             )
             for k in FACTORS:
-                contact = Contact(PAIR, refine(coarse, k), 750e6)
+                contact = Contact(
+                    PAIR, refine(coarse, k), plasticity=plasticity_of(ConstantBound(750e6), None)
+                )
                 for depth in DEPTHS:
                     state = solve(contact, depth)
                     patches = state.patch_sizes()

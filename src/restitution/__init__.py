@@ -8,9 +8,21 @@ if TYPE_CHECKING:
     from restitution.case.materials import material, materials
     from restitution.collision import Collision, collide
     from restitution.contact.bodies import Body, Pair
+    from restitution.contact.cohesive.law import Cohesive, CohesiveLaw
     from restitution.contact.contact import Contact, smooth
+    from restitution.contact.jkr.detachment import CrackClosure, PohrtPopov
+    from restitution.contact.jkr.limit import (
+        AdhesiveApproach,
+        HertzianApproach,
+        JKRLimit,
+        PullIncrements,
+    )
     from restitution.contact.loading import solve, step
+    from restitution.contact.models import Plasticity
     from restitution.contact.path import loading_path, unloading_path
+    from restitution.contact.plasticity.bound import ConstantBound, Elastic
+    from restitution.contact.plasticity.cavity import ExpandingCavity
+    from restitution.contact.plasticity.truncated import Truncated
     from restitution.contact.prescribed.force import solve_at_force
     from restitution.contact.prescribed.pressure import solve_at_pressure
     from restitution.contact.prescribed.velocity import solve_at_velocity
@@ -37,15 +49,28 @@ if TYPE_CHECKING:
     __version__: str
 
 __all__ = [
+    "AdhesiveApproach",
     "Body",
+    "Cohesive",
+    "CohesiveLaw",
     "Collision",
+    "ConstantBound",
     "Contact",
+    "CrackClosure",
+    "Elastic",
+    "ExpandingCavity",
     "Grid",
+    "HertzianApproach",
+    "JKRLimit",
     "ObliqueCollision",
     "Pair",
+    "Plasticity",
+    "PohrtPopov",
+    "PullIncrements",
     "RestitutionError",
     "State",
     "Surface",
+    "Truncated",
     "collide",
     "collide_obliquely",
     "composite",
@@ -85,7 +110,14 @@ _MODULES = {
     "case.materials": ("material", "materials"),
     "collision": ("Collision", "collide"),
     "contact.bodies": ("Body", "Pair"),
+    "contact.cohesive.law": ("Cohesive", "CohesiveLaw"),
     "contact.contact": ("Contact", "smooth"),
+    "contact.jkr.detachment": ("CrackClosure", "PohrtPopov"),
+    "contact.jkr.limit": ("AdhesiveApproach", "HertzianApproach", "JKRLimit", "PullIncrements"),
+    "contact.models": ("Plasticity",),
+    "contact.plasticity.bound": ("ConstantBound", "Elastic"),
+    "contact.plasticity.cavity": ("ExpandingCavity",),
+    "contact.plasticity.truncated": ("Truncated",),
     "contact.prescribed.velocity": ("solve_at_velocity",),
     "contact.prescribed.force": ("solve_at_force",),
     "contact.prescribed.pressure": ("solve_at_pressure",),

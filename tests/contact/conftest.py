@@ -5,6 +5,8 @@ import pytest
 from scipy.linalg import cholesky, solve_triangular
 from scipy.optimize import lsq_linear
 
+from restitution.case.models import plasticity_of
+from restitution.case.models import plasticity_of
 from restitution.contact.bodies import Body, Pair
 from restitution.contact.contact import Contact
 from restitution.numerics.grid import Grid
@@ -41,7 +43,11 @@ def rough_contact(pair):
             qx, qy = 2 * np.pi * rng.integers(-3, 4, 2) / np.array(grid.size)
             z += np.cos(qx * x + qy * y + rng.uniform(0, 2 * np.pi))
         z *= rms / max(z.std(), 1e-300)
-        return Contact(pair, Surface(z, grid), yield_pressure, plasticity)
+        return Contact(
+            pair,
+            Surface(z, grid),
+            plasticity=plasticity_of(plasticity_of(plasticity, yield_pressure), None),
+        )
 
     return make
 

@@ -6,15 +6,25 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from restitution.case.models import plasticity_of
+from restitution.contact.plasticity.plastic_work import plastic_work
 from scipy.integrate import quad
 
+from contact_keys import contact_of
 from restitution import Body, Contact, Grid, Pair, generate_surface, smooth
 from restitution.collision import collide
+from restitution.contact.jkr.limit import JKRLimit
 from restitution.contact.loading import solve, step
 from restitution.contact.path import loading_path, unloading_path
 from restitution.contact.plasticity import cavity
-from restitution.contact.plasticity.cavity import GROWTH, LARGEST, bound_of, yield_bound
-from restitution.contact.plasticity.plastic_work import plastic_work
+from restitution.contact.plasticity.bound import ConstantBound
+from restitution.contact.plasticity.cavity import (
+    GROWTH,
+    LARGEST,
+    ExpandingCavity,
+    bound_of,
+    yield_bound,
+)
 from restitution.contact.prescribed.force import solve_at_force
 from restitution.contact.prescribed.velocity import solve_at_velocity
 from restitution.errors import CaseError
@@ -32,14 +42,14 @@ def ball(omega=8.0, nodes=96, **more):
     """A smooth contact on a grid that is large enough up to ω."""
     h = 2.3 * math.sqrt(2 * PAIR.radius * omega * FIRST) / nodes
     grid = Grid((nodes, nodes), (h, h))
-    return Contact(PAIR, smooth(grid), **{"yield_strength": Y, **more})
+    return contact_of(PAIR, smooth(grid), **{"yield_strength": Y, **more})
 
 
 def rough(seed=1, rms=5e-8, nodes=96, **more):
     grid = Grid((nodes, nodes), (0.6e-6, 0.6e-6))
     shape = {"kind": "gaussian", "rms": rms, "correlation_length": 5e-6}
     surface = generate_surface(grid, seed=seed, **shape)
-    return Contact(PAIR, surface, **{"yield_strength": Y, **more})
+    return contact_of(PAIR, surface, **{"yield_strength": Y, **more})
 
 
 def test_a_yield_strength_asks_for_the_bound_that_grows():
@@ -47,7 +57,12 @@ def test_a_yield_strength_asks_for_the_bound_that_grows():
     assert contact.plasticity == "expanding-cavity"
     assert contact.first_yield_pressure == approx(ONSET * Y, rel=1e-12)
     assert contact.hardness == approx(2.8 * Y, rel=1e-12)
-    assert Contact(PAIR, contact.surface, 2.8 * Y).plasticity == "equilibrium"
+    assert (
+        Contact(
+            PAIR, contact.surface, plasticity=plasticity_of(ConstantBound(2.8 * Y), None)
+        ).plasticity
+        == "equilibrium"
+    )
     assert not Contact(PAIR, contact.surface).grows
 
 
@@ -109,7 +124,7 @@ def test_smooth_spheres_are_those_of_finite_elements(omega):
     scale = (soft["yield_strength"] / Y) ** 2
     depth = omega * FIRST * scale
     h = 2.3 * math.sqrt(2 * PAIR.radius * depth) / 128
-    contact = Contact(PAIR, smooth(Grid((128, 128), (h, h))), **soft)
+    contact = contact_of(PAIR, smooth(Grid((128, 128), (h, h))), **soft)
     *_, state = loading_path(contact, np.geomspace(0.5 * FIRST * scale, depth, 16))
     e, force, area = FINITE_ELEMENTS[omega]
     within = (0.025, 0.04, 0.1) if omega <= 128 else (0.04, 0.06, 0.18)
@@ -134,7 +149,9 @@ def test_lengths_and_pressures_scale():
     scaled_pair = Pair(*2 * [Body(5e-3, 42e9, 0.3, 7850.0)])
     grid = contact.grid
     larger = Grid(grid.nodes, tuple(5 * h for h in grid.spacing))
-    scaled = Contact(scaled_pair, smooth(larger), yield_strength=0.1 * Y)
+    scaled = Contact(
+        scaled_pair, smooth(larger), plasticity=plasticity_of(ExpandingCavity(0.1 * Y), None)
+    )
     one, other = solve(contact, 6 * FIRST), solve(scaled, 30 * FIRST)
     assert other.force == approx(2.5 * one.force, rel=1e-6)
     assert other.loading_work == approx(12.5 * one.loading_work, rel=1e-6)
@@ -200,7 +217,7 @@ def test_the_tolerance_of_the_elastic_pressure_hardly_moves_restitution(kind, mo
     """COR is within 1e-4 and force within 3e-4 of a bound from an elastic pressure at 1e-8."""
     grid = Grid((160, 160), (0.4e-6, 0.4e-6))
     surface = generate_surface(grid, kind=kind, rms=5e-8, correlation_length=3e-6, seed=3)
-    contact = Contact(PAIR, surface, yield_strength=Y)
+    contact = Contact(PAIR, surface, plasticity=plasticity_of(ExpandingCavity(Y), None))
     depths = np.geomspace(1e-8, 4e-7, 5)
     found = [(s.force, collide(s).restitution) for s in loading_path(contact, depths)]
     monkeypatch.setattr(cavity, "_LARGEST_RESIDUAL", 1e-8)
@@ -263,7 +280,11 @@ def test_an_elastic_sphere_below_first_yield_is_hertz():
 def test_the_bound_is_known_beyond_the_edge_of_the_grid():
     """Only the elastic contact, at twice the indentation, exceeds the grid."""
     contact = ball(8, 64)
-    narrow = Contact(PAIR, smooth(Grid((40, 40), contact.grid.spacing)), yield_strength=Y)
+    narrow = Contact(
+        PAIR,
+        smooth(Grid((40, 40), contact.grid.spacing)),
+        plasticity=plasticity_of(ExpandingCavity(Y), None),
+    )
     bound, convolutions = yield_bound(narrow, 5 * FIRST, 1e-8)
     assert bound.shape == (40, 40)
     assert convolutions > 0
@@ -286,14 +307,14 @@ def test_the_bound_is_known_beyond_the_edge_of_the_grid():
 )
 def test_values_that_do_not_go_together(values, said):
     with pytest.raises(CaseError, match=said):
-        Contact(PAIR, smooth(Grid((8, 8), (1e-6, 1e-6))), **values)
+        contact_of(PAIR, smooth(Grid((8, 8), (1e-6, 1e-6))), **values)
 
 
 @pytest.mark.parametrize("yields", ["yield_pressure", "yield_strength"])
 def test_whole_numbers_are_strengths_too(yields):
     grid = Grid((48, 48), (1e-6, 1e-6))
     states = [
-        solve(Contact(PAIR, smooth(grid), **{yields: value}), 5e-7)
+        solve(contact_of(PAIR, smooth(grid), **{yields: value}), 5e-7)
         for value in (500_000_000, 500e6, np.float32(500e6))
     ]
     assert states[0].force == states[1].force == states[2].force
@@ -347,7 +368,9 @@ def test_a_node_that_begins_to_yield_does_so_near_its_last_bound():
 def test_the_smooth_pressure_is_centred_at_the_apex():
     """The apex of smooth adhesive bodies lies between nodes, differently along x and along y."""
     h = 0.3e-6
-    contact = Contact(PAIR, smooth(Grid((32, 24), (h, h))), yield_strength=Y, work_of_adhesion=0.05)
+    contact = Contact(
+        PAIR, smooth(Grid((32, 24), (h, h))), plasticity=ExpandingCavity(Y), adhesion=JKRLimit(0.05)
+    )
     x0, y0 = contact.apex
     assert 0 < y0 < x0
     nodes = np.nonzero(np.ones(contact.grid.nodes, dtype=bool))

@@ -11,15 +11,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from contact_keys import contact_of
 from restitution.collision import collide
 from restitution.contact.bodies import Body, Pair
 from restitution.contact.cohesive import path as cohesive_path
 from restitution.contact.cohesive.equilibrium import cohesive_length, needed_spacing
+from restitution.contact.cohesive.law import Cohesive
 from restitution.contact.cohesive.path import follow, load_cohesive
 from restitution.contact.contact import Contact, smooth
 from restitution.contact.jkr.separation import separation_of
 from restitution.contact.loading import solve, step
 from restitution.contact.path import unloading_path
+from restitution.contact.plasticity.bound import ConstantBound
 from restitution.contact.prescribed.force import solve_at_force
 from restitution.contact.prescribed.velocity import solve_at_velocity
 from restitution.errors import CaseError, DomainError
@@ -55,7 +58,7 @@ def sphere(tabor, depth, *, cells=0.3, rough=0.0, seed=0, **options):
             height += np.cos(q[0] * x[:, None] + q[1] * x + rng.uniform(0, 6.3))
         surface = Surface(rough * Z0 * height / max(height.std(), 1e-30), surface.grid)
     options = {"adhesion": "cohesive", "work_of_adhesion": W, **options}
-    return Contact(pair, surface, equilibrium_separation=Z0, **options)
+    return contact_of(pair, surface, equilibrium_separation=Z0, **options)
 
 
 def reference(tabor):
@@ -247,7 +250,7 @@ def test_a_small_grid_is_refused():
 def test_bad_input(options, words):
     valid = {"work_of_adhesion": W, "adhesion": "cohesive"}
     with pytest.raises(CaseError, match=words) as refusal:
-        Contact(pair_of(1.0), smooth(Grid(8, 1e-8)), **{**valid, **options})
+        contact_of(pair_of(1.0), smooth(Grid(8, 1e-8)), **{**valid, **options})
     assert "\n" not in str(refusal.value)
 
 
@@ -326,7 +329,9 @@ def test_an_elastic_contact_joins_the_unloading_from_a_shallower_depth(limit):
     surface = generate_surface(
         Grid(96, 4e-9), kind="gaussian", rms=1e-9, correlation_length=60e-9, seed=1
     )
-    contact = Contact(Pair(body, body), surface, limit, work_of_adhesion=0.05, adhesion="cohesive")
+    contact = Contact(
+        Pair(body, body), surface, plasticity=ConstantBound(limit), adhesion=Cohesive(0.05)
+    )
     depths = [0.5e-9, 1.5e-9, 3e-9]
     joined, alone = (unloaded(contact, depths, share=share) for share in (True, False))
     assert joined[0] == approx(alone[0], rel=2e-3)

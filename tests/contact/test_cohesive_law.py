@@ -6,20 +6,20 @@ import numpy as np
 import pytest
 
 from restitution.contact.bodies import Body, Pair
-from restitution.contact.cohesive.law import BoundedLaw, largest_softening, law_of, stiffness
+from restitution.contact.cohesive.law import (
+    BoundedLaw,
+    Cohesive,
+    largest_softening,
+    law_of,
+    stiffness,
+)
 from restitution.contact.contact import Contact, smooth
 from restitution.numerics.grid import Grid
 from tolerance import approx
 
 W, Z0 = 0.05, 0.3e-9
 BODY = Body(1e-6, 2e11, 0.3)
-CONTACT = Contact(
-    Pair(BODY, BODY),
-    smooth(Grid(8, 1e-9)),
-    adhesion="cohesive",
-    work_of_adhesion=W,
-    equilibrium_separation=Z0,
-)
+CONTACT = Contact(Pair(BODY, BODY), smooth(Grid(8, 1e-9)), adhesion=Cohesive(W, Z0))
 
 
 @pytest.fixture(params=[math.inf, 2e9], ids=["elastic", "yields"])

@@ -6,7 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
+from restitution.case.models import plasticity_of
 from restitution.contact.contact import Contact, smooth
+from restitution.contact.plasticity.bound import ConstantBound
 from restitution.errors import CaseError
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface
@@ -82,7 +84,11 @@ def test_smooth_says_so(pair):
 @pytest.mark.parametrize("p_y", [0.0, -1.0, math.nan, -math.inf])
 def test_a_yield_pressure_that_is_not_positive_is_refused(pair, p_y):
     with pytest.raises(CaseError, match=r"^yield_pressure: .*not positive"):
-        Contact(pair, smooth(Grid((3, 3), (1e-6, 1e-6))), p_y)
+        Contact(
+            pair,
+            smooth(Grid((3, 3), (1e-6, 1e-6))),
+            plasticity=plasticity_of(ConstantBound(p_y), None),
+        )
 
 
 def test_an_unknown_model_is_refused_with_the_known_ones(pair):

@@ -9,9 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
+from contact_keys import contact_of
+from restitution.case.models import plasticity_of
 from restitution.contact.bodies import Body, Pair
 from restitution.contact.contact import Contact, smooth
 from restitution.contact.loading import solve, solve_without_work, step
+from restitution.contact.plasticity.bound import ConstantBound
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface
 from tolerance import approx
@@ -109,7 +112,7 @@ def one_asperity(pair, **options):
     grid = Grid((9, 8), (0.5 * UM, 0.2 * UM))
     z = np.zeros(grid.nodes)
     z[3, 5] = 200 * NM
-    return Contact(pair, Surface(z, grid), **options)
+    return contact_of(pair, Surface(z, grid), **options)
 
 
 SELF = 2 / (math.pi * E_STAR) * UM * (0.5 * math.asinh(0.4) + 0.2 * math.asinh(2.5))
@@ -181,7 +184,15 @@ def test_turning_the_surface_turns_the_solution(rough_contact, p_y):
 
 def test_a_larger_grid_of_the_same_spacing_changes_nothing(pair):
     small, large = (
-        solve(Contact(pair, smooth(Grid(nodes, (0.5 * UM, 0.4 * UM))), P_Y), DEPTH, residual=1e-11)
+        solve(
+            Contact(
+                pair,
+                smooth(Grid(nodes, (0.5 * UM, 0.4 * UM))),
+                plasticity=plasticity_of(ConstantBound(P_Y), None),
+            ),
+            DEPTH,
+            residual=1e-11,
+        )
         for nodes in ((20, 27), (35, 44))
     )
     assert large.force == approx(small.force, rel=1e-9)
@@ -262,7 +273,9 @@ def test_plateaus_and_ties_are_nothing_special(pair, dense):
         np.where(inside, 20 * NM * np.round(bare / (20 * NM)), bare - 1 * UM),  # terraces
     ):
         for p_y in (math.inf, 2e8):
-            contact = Contact(pair, Surface(z, grid), p_y)
+            contact = Contact(
+                pair, Surface(z, grid), plasticity=plasticity_of(ConstantBound(p_y), None)
+            )
             state = solve(contact, 5 * NM, residual=1e-10)
             p = dense.pressure(contact, 5 * NM)
             assert_allclose(state.pressure, p, atol=1e-6 * p.max())
@@ -356,7 +369,11 @@ def test_unloading_of_a_soft_flat_is_resolved(pair):
     grid = Grid((36, 27), (1 * UM, 4 * UM))
     bare = Contact(pair, smooth(grid)).gap
     inside = np.hypot(grid.x[:, None], grid.y[None, :]) < 12 * UM
-    contact = Contact(pair, Surface(np.where(inside, bare, bare - 9 * UM), grid), 1e-7 * E_STAR)
+    contact = Contact(
+        pair,
+        Surface(np.where(inside, bare, bare - 9 * UM), grid),
+        plasticity=plasticity_of(ConstantBound(1e-7 * E_STAR), None),
+    )
     deepest = solve(contact, 1 * UM)
     spring = 1 * UM - deepest.separation_indentation
     assert spring < 1e-5 * UM

@@ -3,7 +3,6 @@
 import pickle
 
 import pytest
-
 from restitution.contact.checks.finding import Finding
 
 

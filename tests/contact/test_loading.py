@@ -7,9 +7,12 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
+from restitution.case.models import plasticity_of
 from restitution.contact.bodies import Body, Pair
 from restitution.contact.contact import Contact, smooth
+from restitution.contact.jkr.limit import JKRLimit
 from restitution.contact.loading import solve, solve_without_work, step
+from restitution.contact.plasticity.truncated import Truncated
 from restitution.errors import CaseError
 from restitution.numerics.grid import Grid
 from restitution.surfaces import generate_surface
@@ -68,7 +71,7 @@ def test_the_error_of_a_cut_work_holds_where_two_rules_agree_by_chance(pair, see
         grid, kind="gaussian", rms=10 * NM, correlation_length=1 * UM, seed=seed
     )
     p_y = hardness * pair.contact_modulus
-    contact = Contact(pair, rough, yield_pressure=p_y, plasticity="truncated")
+    contact = Contact(pair, rough, plasticity=plasticity_of(Truncated(p_y), None))
     deepest = depth * (4 * UM) ** 2 / pair.radius
     state = solve(contact, deepest)
     depths = deepest * np.linspace(0, 1, 301)
@@ -102,7 +105,11 @@ def test_truncated_without_a_yield_pressure_is_elastic(rough_contact):
 
 
 def test_truncated_below_yield_is_elastic(pair):
-    contact = Contact(pair, smooth(Grid((41, 41), (0.25 * UM, 0.25 * UM))), 1e12, "truncated")
+    contact = Contact(
+        pair,
+        smooth(Grid((41, 41), (0.25 * UM, 0.25 * UM))),
+        plasticity=plasticity_of(Truncated(1e12), None),
+    )
     state = solve(contact, 20 * NM)
     assert state.pressure.max() < 1e12
     assert abs(state.plastic_work) <= state.work_error + 1e-8 * state.stored_energy
@@ -126,7 +133,7 @@ def test_negligible_adhesive_work_is_w_times_the_area_with_an_error_that_covers_
     """Integrated values of the adhesive work were 0.37 to 0.93 of w times the contact area."""
     body = Body(500e-6, 210e9, 0.25)
     grid = Grid((64, 64), (0.5e-6, 0.5e-6))
-    contact = Contact(Pair(body, body), smooth(grid), work_of_adhesion=1e-4)
+    contact = Contact(Pair(body, body), smooth(grid), adhesion=JKRLimit(1e-4))
     state = solve(contact, 4e-7)
     gain = 1e-4 * state.contact_area
     assert state.adhesive_work == approx(gain, rel=1e-12)

@@ -7,6 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from contact_keys import contact_of
+from restitution.case.models import plasticity_of
 from restitution import Body, Contact, Grid, Pair, generate_surface, smooth, solve
 from restitution.collision import collide
 from restitution.contact.checks.model_error import (
@@ -18,6 +20,8 @@ from restitution.contact.checks.model_error import (
     largest_difference,
     model_error,
 )
+from restitution.contact.jkr.limit import JKRLimit
+from restitution.contact.plasticity.cavity import ExpandingCavity
 from tolerance import approx
 
 TABLE = Path(__file__).parents[2] / "validation" / "models.csv"
@@ -27,7 +31,7 @@ GRID = Grid((64, 64), (2e-6, 2e-6))
 
 
 def contact(**yields):
-    return Contact(PAIR, smooth(GRID), **yields)
+    return contact_of(PAIR, smooth(GRID), **yields)
 
 
 def test_it_is_zero_where_nothing_yields():
@@ -82,7 +86,7 @@ def test_it_covers_the_range_that_jkr_neglects(tabor):
     depth = 6 * tabor * z0
     h = 0.35 * (radius**2 * w / E_star) ** (1 / 3)  # a_c/h = 4.3
     n = 2 * int(np.sqrt(3 * radius * depth) / h + 4)
-    jkr = Contact(Pair(body, body), smooth(Grid(n, h)), work_of_adhesion=w)
+    jkr = Contact(Pair(body, body), smooth(Grid(n, h)), adhesion=JKRLimit(w))
     state = solve(jkr, depth)
     collision = collide(state)
     error = model_error(state, collision.restitution)
@@ -167,7 +171,14 @@ def test_steeper_asperities_have_a_larger_error():
     errors = []
     for rms in (1e-9, 5e-8, 2e-7):
         shape = {"kind": "gaussian", "rms": rms, "correlation_length": 4e-6, "seed": 1}
-        state = solve(Contact(PAIR, generate_surface(grid, **shape), yield_strength=1e9), 1e-7)
+        state = solve(
+            Contact(
+                PAIR,
+                generate_surface(grid, **shape),
+                plasticity=plasticity_of(ExpandingCavity(1e9), None),
+            ),
+            1e-7,
+        )
         errors.append(largest_difference(state, 0.8))
     assert errors == sorted(errors)
     assert errors[0] == approx(0.03, rel=0.1)

@@ -7,8 +7,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from restitution.case.models import plasticity_of
+from restitution.contact.perimeter import corrected_area
 from scipy.optimize import brentq
 
+from contact_keys import contact_of
 from restitution import (
     Body,
     Contact,
@@ -24,7 +27,7 @@ from restitution import (
     step,
     unloading_path,
 )
-from restitution.contact.perimeter import corrected_area
+from restitution.contact.plasticity.bound import ConstantBound
 from restitution.errors import CaseError, DomainError, NotConvergedError
 from restitution.numerics.quadrature import integrate_curve
 from restitution.theory import Persson
@@ -40,7 +43,7 @@ def wave(nodes, **model):
     """Wave along x: h = Δ (1 − cos 2πx/λ), with Δ = `AMPLITUDE`."""
     grid = Grid(nodes, WAVELENGTH / nodes[0])
     z = AMPLITUDE * np.cos(2 * np.pi * grid.x / WAVELENGTH)
-    return Contact(FLAT, Surface(np.tile(z[:, None], nodes[1]), grid), **model, periodic=True)
+    return contact_of(FLAT, Surface(np.tile(z[:, None], nodes[1]), grid), **model, periodic=True)
 
 
 def egg_box(n):
@@ -57,7 +60,7 @@ def rough(nodes=64, seed=1, **model):
     surface = generate_surface(
         grid, kind="self-affine", rms=50e-9, hurst=0.8, rolloff=32 * h, shortest=8 * h, seed=seed
     )
-    return Contact(FLAT, surface, **model, periodic=True)
+    return contact_of(FLAT, surface, **model, periodic=True)
 
 
 def displacement(pressure, spacing, mean=0.0):
@@ -179,7 +182,9 @@ def test_the_contact_conditions(nodes, seed, exponent, yield_pressure):
     z = np.real(np.fft.ifft2(np.fft.fft2(z) * np.exp(-0.02 * np.arange(nodes[0])[:, None])))
     grid = Grid(nodes, (0.3e-6, 0.2e-6))
     surface = Surface(20e-9 * z / z.std(), grid)
-    contact = Contact(FLAT, surface, yield_pressure, periodic=True)
+    contact = Contact(
+        FLAT, surface, plasticity=plasticity_of(ConstantBound(yield_pressure), None), periodic=True
+    )
     pressure = min(10**exponent * 0.1 * E, 0.9 * yield_pressure)
     state = solve_at_pressure(contact, pressure)
     assert state.nominal_pressure == approx(pressure, rel=2e-8)

@@ -9,8 +9,10 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from contact_keys import contact_of
 from restitution import Body, Contact, Grid, Pair, Surface, solve, solve_at_pressure, step
 from restitution.contact.cohesive.equilibrium import box_gap, needed_spacing, rigid_start
+from restitution.contact.cohesive.law import Cohesive
 from restitution.contact.cohesive.path import follow
 from restitution.contact.jkr.separation import separation_of
 from restitution.contact.path import unloading_path
@@ -40,7 +42,7 @@ def rough(nodes, height, *, cells=0.3, seed=0, **model):
     surface = Surface(height * Z0 * z / np.ptp(z), grid)
     model = {"work_of_adhesion": W, "adhesion": "cohesive", **model}
     model = {"equilibrium_separation": Z0, "pair": pair_of(E_STAR), **model}
-    return Contact(surface=surface, periodic=True, **model)
+    return contact_of(surface=surface, periodic=True, **model)
 
 
 def per_area(contact):
@@ -97,14 +99,7 @@ def test_the_wave_of_johnson(alpha):
     amplitude = math.sqrt(2 * W * wavelength / (math.pi**2 * modulus)) / alpha
     grid = Grid((nodes, 1), wavelength / nodes)
     z = amplitude * np.cos(2 * np.pi * (np.arange(nodes) + 0.31) / nodes)[:, None]
-    contact = Contact(
-        pair_of(modulus),
-        Surface(z, grid),
-        work_of_adhesion=W,
-        adhesion="cohesive",
-        equilibrium_separation=z0,
-        periodic=True,
-    )
+    contact = Contact(pair_of(modulus), Surface(z, grid), adhesion=Cohesive(W, z0), periodic=True)
     full = math.pi * modulus * amplitude / wavelength
     psi = np.linspace(0.02, 1.2, 20000)
     log = np.log(np.sin(psi))

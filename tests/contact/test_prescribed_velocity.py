@@ -5,6 +5,7 @@ import pytest
 
 from restitution.contact.bodies import Body, Pair
 from restitution.contact.contact import Contact, smooth
+from restitution.contact.jkr.limit import JKRLimit
 from restitution.contact.loading import solve
 from restitution.contact.path import loading_path
 from restitution.contact.prescribed import velocity as prescribed_velocity
@@ -91,7 +92,7 @@ def test_a_work_that_is_negative_at_small_depths_is_no_way_back():
     """Adhesion attracts the bodies, so the loading work is negative at first touch."""
     body = Body(20e-6, 5e9, 0.3, 1500.0)
     grid = Grid((48, 48), (0.12e-6, 0.12e-6))
-    contact = Contact(Pair(body, body), smooth(grid), work_of_adhesion=0.3)
+    contact = Contact(Pair(body, body), smooth(grid), adhesion=JKRLimit(0.3))
     shallow = solve(contact, 1e-9)
     assert shallow.loading_work < 0
     state = solve_at_velocity(contact, 0.05)

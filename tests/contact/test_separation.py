@@ -8,7 +8,10 @@ import numpy as np
 import pytest
 
 from restitution import Body, Contact, Grid, Pair, collide, generate_surface, smooth, solve
+from restitution.case.models import adhesion_of
 from restitution.contact.jkr import separation
+from restitution.contact.jkr.limit import HertzianApproach, JKRLimit, PullIncrements
+from restitution.contact.plasticity.bound import ConstantBound
 from restitution.errors import NotConvergedError
 from tolerance import approx
 
@@ -18,7 +21,9 @@ STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25)
 @pytest.fixture(scope="module")
 def pressed():
     grid = Grid((31, 31), (0.15e-6, 0.15e-6))
-    contact = Contact(Pair(STEEL, STEEL), smooth(grid), work_of_adhesion=0.09, approach="hertzian")
+    contact = Contact(
+        Pair(STEEL, STEEL), smooth(grid), adhesion=JKRLimit(0.09, approach=HertzianApproach())
+    )
     return solve(contact, 3e-9)
 
 
@@ -43,9 +48,7 @@ def loaded(detachment, n=40, depth=3.5e-9):
     contact = Contact(
         Pair(STEEL, STEEL),
         smooth(grid),
-        work_of_adhesion=0.09,
-        approach="hertzian",
-        detachment=detachment,
+        adhesion=adhesion_of(work_of_adhesion=0.09, approach="hertzian", detachment=detachment),
     )
     return solve(contact, depth)
 
@@ -101,7 +104,9 @@ def test_no_step_jumps_over_the_tension():
     """
     grid = Grid((128, 128), (0.25e-6, 0.25e-6))
     surface = generate_surface(grid, kind="gaussian", rms=0.1e-6, correlation_length=2e-6, seed=2)
-    contact = Contact(Pair(STEEL, STEEL), surface, 750e6, work_of_adhesion=0.09)
+    contact = Contact(
+        Pair(STEEL, STEEL), surface, plasticity=ConstantBound(750e6), adhesion=JKRLimit(0.09)
+    )
     path = list(separation.separate(solve(contact, 200e-9)))
     assert sum(state.force < 0 for state in path) > 15
     assert separation.separation_of(path).pull_off_force == approx(2.2e-4, rel=0.08)
@@ -112,9 +117,8 @@ def test_a_seed_that_lets_go_of_everything_is_parted_and_returns_nothing():
     contact = Contact(
         Pair(STEEL, STEEL),
         smooth(Grid(32, 0.5e-6)),
-        1e6,
-        work_of_adhesion=1e-3,
-        approach="pull-increments",
+        plasticity=ConstantBound(1e6),
+        adhesion=JKRLimit(1e-3, approach=PullIncrements()),
     )
     state = solve(contact, 1e-10)
     assert (state.contact_nodes, state.force, state.contact_area) == (0, 0.0, 0.0)

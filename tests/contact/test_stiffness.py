@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import restitution as rs
+from contact_keys import contact_of
 from restitution.contact.prescribed.stiffness import normal_stiffness
 from restitution.errors import CaseError
 from restitution.theory import LennardJones
@@ -21,14 +22,14 @@ COMPLETE = math.pi * E * AMPLITUDE / WAVELENGTH
 def wave(nodes, **model):
     grid = rs.Grid((nodes, 4), WAVELENGTH / nodes)
     z = AMPLITUDE * np.cos(2 * np.pi * grid.x / WAVELENGTH)
-    return rs.Contact(FLAT, rs.Surface(np.tile(z[:, None], 4), grid), **model, periodic=True)
+    return contact_of(FLAT, rs.Surface(np.tile(z[:, None], 4), grid), **model, periodic=True)
 
 
 def rough(rms=50e-9, spacing=0.25e-6, **model):
     grid = rs.Grid(64, spacing)
     waves = {"hurst": 0.8, "rolloff": 32 * spacing, "shortest": 8 * spacing}
     surface = rs.generate_surface(grid, kind="self-affine", rms=rms, seed=1, **waves)
-    return rs.Contact(FLAT, surface, **model, periodic=True)
+    return contact_of(FLAT, surface, **model, periodic=True)
 
 
 def slope(contact, indentation, step):

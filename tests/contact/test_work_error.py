@@ -6,9 +6,14 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
+from restitution.case.models import plasticity_of
 from restitution import Body, Contact, Grid, Pair, generate_surface, smooth, solve
+from restitution.case.models import adhesion_of
 from restitution.contact import loading
 from restitution.contact.jkr import loading_work as adhesive_work
+from restitution.contact.plasticity.bound import ConstantBound
+from restitution.contact.plasticity.cavity import ExpandingCavity
+from restitution.contact.plasticity.truncated import Truncated
 from tolerance import approx
 
 BODY = Body(1e-3, 420e9, 0.3, 7850.0)
@@ -20,7 +25,12 @@ def adhesive(seed, approach="equilibrium"):
     grid = Grid((40, 40), (0.4e-6, 0.4e-6))
     shape = {"kind": "gaussian", "rms": 1e-8, "correlation_length": 2e-6}
     surface = generate_surface(grid, seed=seed, **shape)
-    return Contact(PAIR, surface, 3e9, work_of_adhesion=1.0, approach=approach)
+    return Contact(
+        PAIR,
+        surface,
+        plasticity=ConstantBound(3e9),
+        adhesion=adhesion_of(work_of_adhesion=1.0, approach=approach),
+    )
 
 
 def test_it_holds_where_the_grid_pins_the_edge_of_the_contact():
@@ -72,7 +82,7 @@ def test_a_cut_adds_ten_tolerances(monkeypatch):
 
     monkeypatch.setattr(loading, "integrate_adaptively", without_error)
     grid = Grid((40, 40), (0.4e-6, 0.4e-6))
-    contact = Contact(PAIR, smooth(grid), 1e9, plasticity="truncated")
+    contact = Contact(PAIR, smooth(grid), plasticity=plasticity_of(Truncated(1e9), None))
     state = solve(contact, DEPTH)
     assert state.work_error == approx(10 * asked[0], rel=1e-9)
     assert asked[0] > 0
@@ -81,7 +91,7 @@ def test_a_cut_adds_ten_tolerances(monkeypatch):
 def test_increments_add_parts_of_what_the_growth_of_the_bound_adds():
     """The error is 1/10 for nodes that had yielded before and 1/4 for nodes that begin to yield."""
     grid = Grid((64, 64), (0.5e-6, 0.5e-6))
-    contact = Contact(PAIR, smooth(grid), yield_strength=1e9)
+    contact = Contact(PAIR, smooth(grid), plasticity=plasticity_of(ExpandingCavity(1e9), None))
     before = solve(contact, 1.5e-7)
     after = solve(contact, 2e-7, start=before)
     given = after.plastic_displacement - before.plastic_displacement

@@ -8,9 +8,11 @@ from types import SimpleNamespace
 
 import pytest
 
+from restitution.case.models import plasticity_of
 from restitution import Body, Contact, Grid, Pair, smooth, solve
 from restitution.collision import collide
 from restitution.contact.checks.model_error import depth_difference, largest_difference, model_error
+from restitution.contact.plasticity.cavity import ExpandingCavity
 from restitution.errors import CaseError
 from tolerance import approx
 
@@ -104,7 +106,10 @@ def test_two_equal_spheres_are_one_sphere_on_a_rigid_flat():
 def test_a_row_contains_it():
     strength = 0.003 * 0.5 * E / (1 - 0.3**2)
     contact = Contact(
-        Pair(BALL, WALL), smooth(Grid(64, 0.5 * R / 64)), yield_strength=strength, yields="first"
+        Pair(BALL, WALL),
+        smooth(Grid(64, 0.5 * R / 64)),
+        plasticity=plasticity_of(ExpandingCavity(strength), None),
+        yields="first",
     )
     state = solve(contact, 0.01 * R)
     e = collide(state).restitution

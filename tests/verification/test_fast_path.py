@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from restitution import Body, Contact, Grid, Pair, solve, step
+from contact_keys import contact_of
+from restitution import Body, Grid, Pair, solve, step
 from restitution.contact import loading
 from restitution.contact.influence import half_space, inverse_half_space
 from restitution.contact.jkr import area as adhesion
@@ -24,7 +25,7 @@ def rough(seed, **options):
     grid = Grid((200, 184), (0.12e-6, 0.13e-6))
     rms = (20e-9, 60e-9)[seed % 2]
     surface = generate_surface(grid, kind="gaussian", rms=rms, correlation_length=1e-6, seed=seed)
-    return Contact(Pair(STEEL, STEEL), surface, **options)
+    return contact_of(Pair(STEEL, STEEL), surface, **options)
 
 
 def plain_pressure(contact, depth):

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from restitution import Body, Contact, Grid, Pair, Surface, solve
+from restitution.case.models import adhesion_of
 from restitution.contact.jkr.separation import separate, separation_of, unloading_curve
 from restitution.contact.loading import solve_without_work
 from restitution.theory import JKR
@@ -39,7 +40,11 @@ def sphere(nodes, offset=(0, 0), approach="equilibrium", detachment="crack-closu
     x, y = grid.x[:, None], grid.y[None, :]
     shifted = (x - offset[0] * h) ** 2 + (y - offset[1] * h) ** 2
     surface = Surface((x * x + y * y - shifted) / (2 * PAIR.radius), grid, {"source": "shifted"})
-    contact = Contact(PAIR, surface, work_of_adhesion=W, approach=approach, detachment=detachment)
+    contact = Contact(
+        PAIR,
+        surface,
+        adhesion=adhesion_of(work_of_adhesion=W, approach=approach, detachment=detachment),
+    )
     return contact, float(shifted.min()) / (2 * PAIR.radius)
 
 

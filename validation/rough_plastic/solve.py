@@ -6,6 +6,7 @@ in this project needs them. `contact.py` solves; here are the surfaces, the load
 Units inside: micrometre, MPa, hence micronewton; files are in SI units.
 """
 
+from restitution.case.models import plasticity_of
 import os
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
@@ -161,12 +162,7 @@ def main():
     solver = Contact(
         z,
         length,
-        a.depth,
-        a.layers,
-        modulus,
-        poisson,
-        a.yield_strength,
-        radius,
+        plasticity=plasticity_of(a.layers, a.depth),
         elastic=a.elastic,
         images=not a.no_images,
         tolerance=a.tolerance,
