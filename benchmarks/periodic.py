@@ -18,7 +18,6 @@ from compare import OURS, PROGRAMS, RESIDUAL, ROOT, Worker, compare, power, shor
 from problems import SPACING, Problem
 from unit import machine, today
 
-from restitution.case.models import plasticity_of
 from restitution import Body, Contact, Grid, Pair, generate_surface, solve_at_pressure
 from restitution.contact.plasticity.bound import ConstantBound
 from restitution.surfaces import rms_slope
@@ -87,7 +86,7 @@ def problems(n: int) -> list[Problem]:
         contact = Contact(
             FLAT,
             surface,
-            plasticity=plasticity_of(ConstantBound(limit * unit), None),
+            plasticity=ConstantBound(limit * unit),
             periodic=True,
         )
         state = solve_at_pressure(contact, pressure * unit, residual=1e-10)
@@ -97,7 +96,7 @@ def problems(n: int) -> list[Problem]:
                 contact.gap,
                 SPACING,
                 E_star,
-                contact.yield_pressure,
+                contact.hardness,
                 state.indentation,
                 math.inf,
                 state.force,

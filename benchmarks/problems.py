@@ -14,7 +14,6 @@ from pathlib import Path
 import numpy as np
 import scipy.fft
 
-from restitution.case.models import plasticity_of
 from restitution import Body, Contact, Grid, Pair, generate_surface, smooth, solve
 from restitution.contact.plasticity.bound import ConstantBound
 
@@ -81,7 +80,7 @@ def all_problems(n: int) -> list[Problem]:
         ("elastic rough", Contact(PAIR, rough), 10e-6),
         (
             "plastic smooth",
-            Contact(PAIR, flat, plasticity=plasticity_of(ConstantBound(750e6), None)),
+            Contact(PAIR, flat, plasticity=ConstantBound(750e6)),
             20e-6,
         ),
     )
@@ -94,7 +93,7 @@ def _problem(name: str, contact: Contact, indentation: float) -> Problem:
         contact.gap,
         SPACING,
         PAIR.contact_modulus,
-        contact.yield_pressure,
+        contact.hardness,
         indentation,
         PAIR.radius,
         solve(contact, indentation, residual=1e-11).force,

@@ -22,7 +22,6 @@ import numpy as np
 import scipy.fft
 from unit import machine, measure_unit, today
 
-from restitution.case.models import plasticity_of
 from restitution import Body, Contact, Grid, Pair, Surface, generate_surface, operator_cache, solve
 from restitution.contact.plasticity.bound import ConstantBound
 
@@ -110,7 +109,7 @@ def measure(n: int, limit: str, depth: str) -> dict:
         operator_cache.clear()
         began = time.perf_counter()
         state = solve(
-            Contact(PAIR, surface, plasticity=plasticity_of(ConstantBound(LIMITS[limit]), None)),
+            Contact(PAIR, surface, plasticity=ConstantBound(LIMITS[limit])),
             delta,
         )
         times.append(time.perf_counter() - began)

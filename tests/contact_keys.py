@@ -2,6 +2,7 @@
 
 from restitution.case.models import adhesion_of, plasticity_of
 from restitution.contact.contact import Contact
+from restitution.contact.interface import interface_of
 
 _PLASTICITY = ("plasticity", "yield_pressure", "yield_strength", "tangent_modulus")
 _ADHESION = ("adhesion", "work_of_adhesion", "approach", "detachment", "equilibrium_separation")
@@ -17,3 +18,8 @@ def models_of(**keys):
 
 def contact_of(pair, surface, **keys):
     return Contact(pair, surface, **models_of(**keys))
+
+
+def load(contact, indentation, *, start=None, residual=1e-8):
+    """Load without the work that has to be integrated."""
+    return interface_of(contact).load(contact, indentation, start=start, residual=residual)

@@ -7,7 +7,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from contact_keys import contact_of
-from restitution.case.models import plasticity_of
 from restitution.collision import Collision, collide
 from restitution.contact.bodies import Body, Pair
 from restitution.contact.contact import Contact, smooth
@@ -107,9 +106,7 @@ def test_the_way_to_the_deepest_point_does_not_matter():
 
 def test_no_collision_returns_more_than_it_took():
     grid = Grid((41, 41), (0.25 * UM, 0.25 * UM))
-    below_yield = Contact(
-        Pair(STEEL, STEEL), smooth(grid), plasticity=plasticity_of(Truncated(1e12), None)
-    )
+    below_yield = Contact(Pair(STEEL, STEEL), smooth(grid), plasticity=Truncated(1e12))
     assert collide(solve(below_yield, 20 * NM)).restitution <= 1 + 1e-8
 
 

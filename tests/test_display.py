@@ -4,7 +4,6 @@ import math
 
 import pytest
 
-from restitution.case.models import plasticity_of
 import restitution as rs
 from restitution.display import counted, duration, quantity, some_of, with_error, without_numbers
 from restitution.results.reader import RunResults
@@ -12,9 +11,7 @@ from restitution.results.reader import RunResults
 STEEL = rs.Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25, density=7850)
 GRID = rs.Grid((64, 48), (0.5e-6, 1e-6))
 SURFACE = rs.generate_surface(GRID, kind="gaussian", rms=50e-9, correlation_length=3e-6, seed=1)
-CONTACT = rs.Contact(
-    rs.Pair(STEEL, STEEL), SURFACE, plasticity=plasticity_of(rs.ConstantBound(750e6), None)
-)
+CONTACT = rs.Contact(rs.Pair(STEEL, STEEL), SURFACE, plasticity=rs.ConstantBound(750e6))
 STATE = rs.solve(CONTACT, indentation=100e-9)
 
 

@@ -11,7 +11,6 @@ that the grid does not resolve.
 import matplotlib.pyplot as plt
 import numpy as np
 
-from restitution.case.models import plasticity_of
 import restitution as rs
 
 steel = rs.Body(radius=0.5e-3, youngs_modulus=193e9, poissons_ratio=0.29, density=8000)
@@ -33,7 +32,7 @@ for colour, rms in zip(("0.5", "C0", "C1", "C3"), (0, 0.05e-6, 0.1e-6, 0.3e-6), 
         surface = rs.generate_surface(
             grid, kind="gaussian", rms=rms, correlation_length=4e-6, seed=1
         )
-    contact = rs.Contact(pair, surface, plasticity=plasticity_of(rs.ExpandingCavity(290e6), None))
+    contact = rs.Contact(pair, surface, plasticity=rs.ExpandingCavity(290e6))
     states = list(rs.loading_path(contact, velocities=velocities))
     e = np.array([rs.collide(state).restitution for state in states])
     resolved = np.array([median_patch(state) >= 20 for state in states])

@@ -10,7 +10,6 @@ has about 20 nodes or more, COR changes by less than 2 % on still finer grids.
 import matplotlib.pyplot as plt
 import numpy as np
 
-from restitution.case.models import plasticity_of
 import restitution as rs
 
 steel = rs.Body(radius=0.5e-3, youngs_modulus=193e9, poissons_ratio=0.29, density=8000)
@@ -24,7 +23,7 @@ for i, velocity in enumerate(velocities):
     spacing, e, resolved = [], [], []
     for factor in (1, 2, 4, 8):
         finer = rs.refine(surface, factor)
-        contact = rs.Contact(pair, finer, plasticity=plasticity_of(rs.ExpandingCavity(290e6), None))
+        contact = rs.Contact(pair, finer, plasticity=rs.ExpandingCavity(290e6))
         state = rs.solve_at_velocity(contact, velocity)
         sizes = state.patch_sizes()
         spacing.append(1e6 * finer.grid.spacing[0])

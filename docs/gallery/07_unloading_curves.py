@@ -10,7 +10,6 @@ bodies separate.
 import matplotlib.pyplot as plt
 import numpy as np
 
-from restitution.case.models import plasticity_of
 import restitution as rs
 
 steel = rs.Body(radius=0.5e-3, youngs_modulus=193e9, poissons_ratio=0.29, density=8000)
@@ -19,9 +18,7 @@ rough = rs.generate_surface(grid, kind="gaussian", rms=0.2e-6, correlation_lengt
 
 fig, ax = plt.subplots(layout="constrained")
 for i, (name, surface) in enumerate({"smooth": rs.smooth(grid), "rough": rough}.items()):
-    contact = rs.Contact(
-        rs.Pair(steel, steel), surface, plasticity=plasticity_of(rs.ExpandingCavity(290e6), None)
-    )
+    contact = rs.Contact(rs.Pair(steel, steel), surface, plasticity=rs.ExpandingCavity(290e6))
     loading = list(rs.loading_path(contact, np.linspace(50e-9, 800e-9, 8)))
     depth = [0] + [1e9 * state.indentation for state in loading]
     ax.plot(depth, [0] + [state.force for state in loading], f"C{i}o-", ms=3, label=name)

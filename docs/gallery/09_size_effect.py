@@ -11,7 +11,6 @@ material.
 import matplotlib.pyplot as plt
 import numpy as np
 
-from restitution.case.models import plasticity_of
 import restitution as rs
 
 velocity = 0.1
@@ -30,7 +29,7 @@ for radius in sizes / 2:
     found = [
         rs.collide(
             rs.solve_at_velocity(
-                rs.Contact(pair, one, plasticity=plasticity_of(rs.ExpandingCavity(290e6), None)),
+                rs.Contact(pair, one, plasticity=rs.ExpandingCavity(290e6)),
                 velocity,
             )
         ).restitution

@@ -11,7 +11,6 @@ interval.
 import matplotlib.pyplot as plt
 import numpy as np
 
-from restitution.case.models import plasticity_of
 import restitution as rs
 
 steel = rs.Body(radius=0.5e-3, youngs_modulus=193e9, poissons_ratio=0.29, density=8000)
@@ -24,7 +23,7 @@ for seed in range(12):
     surface = rs.generate_surface(
         grid, kind="gaussian", rms=0.2e-6, correlation_length=5e-6, seed=seed
     )
-    contact = rs.Contact(pair, surface, plasticity=plasticity_of(rs.ExpandingCavity(290e6), None))
+    contact = rs.Contact(pair, surface, plasticity=rs.ExpandingCavity(290e6))
     states = rs.loading_path(contact, velocities=velocities)
     curves.append([rs.collide(state).restitution for state in states])
 

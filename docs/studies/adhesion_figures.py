@@ -64,8 +64,8 @@ def rows_of(surface, contact, depths):
         collision = collide(state)
         yield {
             "surface": surface,
-            "work_of_adhesion_J_per_m2": contact.work_of_adhesion,
-            "yield_pressure_Pa": contact.yield_pressure,
+            "work_of_adhesion_J_per_m2": contact.adhesion.work_of_adhesion,
+            "yield_pressure_Pa": contact.hardness,
             "spacing_m": contact.grid.spacing[0],
             "indentation_m": state.indentation,
             "restitution": collision.restitution,

@@ -60,7 +60,7 @@ def cycle(contact, indentation):
     """Energy lost in a cycle, and pull-off force; both over their values by JKR."""
     state = solve(contact, indentation)
     path = list(unloading_path(state))
-    jkr = JKR(contact.pair.radius, contact.pair.contact_modulus, contact.work_of_adhesion)
+    jkr = JKR(contact.pair.radius, contact.pair.contact_modulus, contact.adhesion.work_of_adhesion)
     if contact.cohesive:
         lost = path[-1].adhesive_loss
     else:
@@ -292,7 +292,7 @@ def balance():
                 "tabor_parameter": round(tabor, 3),
                 "depth_over_z0": round(depth, 3),
                 "rms_over_z0": round(rms / Z0, 2),
-                "yield_pressure_GPa": contact.yield_pressure / 1e9,
+                "yield_pressure_GPa": contact.hardness / 1e9,
                 "stored_energy_J": f"{state.stored_energy:.5e}",
                 "interaction_energy_J": f"{state.interaction_energy:.5e}",
                 "loading_work_J": f"{state.loading_work:.5e}",

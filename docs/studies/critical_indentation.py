@@ -10,7 +10,6 @@ import numpy as np
 from scipy.stats import linregress, t
 from shared import PAIR, STEEL, write_image, write_table
 
-from restitution.case.models import plasticity_of
 from restitution import Contact, Grid, collide, generate_surface, smooth, solve
 from restitution.contact.plasticity.bound import ConstantBound
 from restitution.plots.figure import (
@@ -74,9 +73,7 @@ def fit(length, x, y):
 
 def main():
     """Compute, print and draw."""
-    reference = restitutions(
-        Contact(PAIR, smooth(GRID), plasticity=plasticity_of(ConstantBound(750e6), None))
-    )
+    reference = restitutions(Contact(PAIR, smooth(GRID), plasticity=ConstantBound(750e6)))
     table = []
     for length in LENGTHS:
         for rms in ROUGHNESS:
@@ -85,9 +82,7 @@ def main():
                     GRID, kind="gaussian", rms=rms, correlation_length=length, seed=seed
                 )
                 off = (
-                    restitutions(
-                        Contact(PAIR, surface, plasticity=plasticity_of(ConstantBound(750e6), None))
-                    )
+                    restitutions(Contact(PAIR, surface, plasticity=ConstantBound(750e6)))
                     / reference
                     - 1
                 )

@@ -12,7 +12,6 @@ from __future__ import annotations
 import numpy as np
 from shared import PAIR, write_image, write_table
 
-from restitution.case.models import plasticity_of
 from restitution import Contact, Grid, collide, generate_surface, refine, solve
 from restitution.contact.checks.resolution import NODES_PER_PATCH, median_patch
 from restitution.contact.plasticity.bound import ConstantBound
@@ -36,9 +35,7 @@ def rows():
         for seed in SEEDS:
             coarse = generate_surface(GRID, seed=seed, **kind)
             contacts = {
-                k: Contact(
-                    PAIR, refine(coarse, k), plasticity=plasticity_of(ConstantBound(750e6), None)
-                )
+                k: Contact(PAIR, refine(coarse, k), plasticity=ConstantBound(750e6))
                 for k in FACTORS
             }
             # All grids contain the coarse nodes, where the gaps differ only by the shift of first

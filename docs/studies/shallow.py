@@ -9,7 +9,6 @@ from __future__ import annotations
 import numpy as np
 from shared import PAIR, write_image, write_table
 
-from restitution.case.models import plasticity_of
 from restitution import Contact, Grid, collide, generate_surface, refine, solve
 from restitution.contact.checks.resolution import median_patch, resolves
 from restitution.contact.plasticity.bound import ConstantBound
@@ -31,9 +30,7 @@ def rows():
                 GRID, kind="gaussian", rms=rms, correlation_length=2e-6, seed=seed
             )
             for k in FACTORS:
-                contact = Contact(
-                    PAIR, refine(coarse, k), plasticity=plasticity_of(ConstantBound(750e6), None)
-                )
+                contact = Contact(PAIR, refine(coarse, k), plasticity=ConstantBound(750e6))
                 for depth in DEPTHS:
                     state = solve(contact, depth)
                     patches = state.patch_sizes()

@@ -6,7 +6,6 @@ from scipy.linalg import cholesky, solve_triangular
 from scipy.optimize import lsq_linear
 
 from restitution.case.models import plasticity_of
-from restitution.case.models import plasticity_of
 from restitution.contact.bodies import Body, Pair
 from restitution.contact.contact import Contact
 from restitution.numerics.grid import Grid
@@ -46,7 +45,7 @@ def rough_contact(pair):
         return Contact(
             pair,
             Surface(z, grid),
-            plasticity=plasticity_of(plasticity_of(plasticity, yield_pressure), None),
+            plasticity=plasticity_of(plasticity, yield_pressure),
         )
 
     return make
@@ -74,7 +73,7 @@ class Dense:
     @staticmethod
     def pressure(contact, indentation, limit=None, *, plastic=0.0):
         """Pressure on the whole grid: the minimum of ½|Lᵀp − L⁻¹b|² with 0 ≤ p ≤ p_y."""
-        limit = contact.yield_pressure if limit is None else limit
+        limit = contact.hardness if limit is None else limit
         K = Dense.influence(contact.grid, contact.pair.contact_modulus)
         b = (indentation - contact.gap - plastic).ravel()
         unit = indentation / K[0, 0]  # scales the unknowns to order one
@@ -92,7 +91,7 @@ class Dense:
     @staticmethod
     def violation(contact, pressure, indentation, limit=None, *, plastic=0.0):
         """Largest violation of the contact conditions anywhere on the grid, over δ."""
-        limit = contact.yield_pressure if limit is None else limit
+        limit = contact.hardness if limit is None else limit
         g = Dense.gap(contact, pressure, indentation) + plastic
         can_fall, can_rise = pressure > 0, pressure < limit
         return max((g * can_fall).max(), (-g * can_rise).max()) / indentation

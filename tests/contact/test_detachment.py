@@ -10,7 +10,6 @@ from scipy.ndimage import label
 from restitution import Body, Contact, Grid, Pair, Surface, solve
 from restitution.case.models import adhesion_of
 from restitution.contact.influence import half_space
-from restitution.contact.jkr import area as adhesion
 from restitution.contact.jkr import detachment
 from restitution.contact.jkr.area import release_nodes
 from restitution.contact.jkr.detachment import (
@@ -213,7 +212,7 @@ def test_criteria_by_name(name, rule, monkeypatch):
             calls.append((function.__name__, given))
             return function(*given)
 
-        monkeypatch.setattr(adhesion, function.__name__, recorded)
+        monkeypatch.setattr(detachment, function.__name__, recorded)
     whole = slice(0, disc.shape[0]), slice(0, disc.shape[1])
     release_nodes(contact, -1e-9, whole, disc, limit=math.inf, residual=1e-9)
     assert {called for called, _ in calls} == {rule}

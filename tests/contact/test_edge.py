@@ -6,9 +6,8 @@ import re
 import numpy as np
 import pytest
 
-from restitution.case.models import plasticity_of
 from restitution import Body, Contact, Grid, Pair, Surface, generate_surface, smooth, solve
-from restitution.contact.checks.edge import EdgeReachedError, edge_values, needed_edges
+from restitution.contact.checks.edge import EdgeReachedError, edge_reached, needed_edges
 from restitution.contact.plasticity.bound import ConstantBound
 from tolerance import approx
 
@@ -34,18 +33,14 @@ def test_the_grid_advised_holds_the_contact():
         smooth(GRID),
         generate_surface(GRID, kind="gaussian", rms=1e-7, correlation_length=6e-6, seed=2),
     ):
-        message = str(
-            refusal(
-                Contact(STEEL, surface, plasticity=plasticity_of(ConstantBound(750e6), None)), 2e-6
-            )
-        )
+        message = str(refusal(Contact(STEEL, surface, plasticity=ConstantBound(750e6)), 2e-6))
         edge = float(re.search(r"use a grid of about ([\d.]+) um or stop", message)[1])
         nodes = int(edge) + 1
         solve(
             Contact(
                 STEEL,
                 smooth(Grid((nodes, nodes), (1e-6, 1e-6))),
-                plasticity=plasticity_of(ConstantBound(750e6), None),
+                plasticity=ConstantBound(750e6),
             ),
             2e-6,
         )
@@ -97,4 +92,4 @@ def test_a_first_touch_off_the_centre_is_said(node, off):
     height = np.zeros(grid.nodes)
     height[node] = 1e-5
     contact = Contact(STEEL, Surface(height, grid))
-    assert edge_values(contact, 1e-7)["off_centre"] is off
+    assert edge_reached(contact, 1e-7).off_centre is off

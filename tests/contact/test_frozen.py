@@ -7,7 +7,6 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from contact_keys import contact_of
-from restitution.case.models import plasticity_of
 from restitution import Contact, Grid, Surface, smooth, solve, step, unloading_path
 from restitution.contact.plasticity.bound import ConstantBound
 
@@ -99,12 +98,10 @@ def test_surfaces_and_states_are_equal_by_identity(pair):
 def test_contacts_are_equal_by_value_on_one_surface(pair):
     surface = smooth(GRID)
     contact, same = (
-        Contact(pair, surface, plasticity=plasticity_of(ConstantBound(750e6), None)),
-        Contact(pair, surface, plasticity=plasticity_of(ConstantBound(750e6), None)),
+        Contact(pair, surface, plasticity=ConstantBound(750e6)),
+        Contact(pair, surface, plasticity=ConstantBound(750e6)),
     )
     assert contact == same
     assert hash(contact) == hash(same)
-    assert contact != Contact(pair, surface, plasticity=plasticity_of(ConstantBound(751e6), None))
-    assert contact != Contact(
-        pair, smooth(GRID), plasticity=plasticity_of(ConstantBound(750e6), None)
-    )
+    assert contact != Contact(pair, surface, plasticity=ConstantBound(751e6))
+    assert contact != Contact(pair, smooth(GRID), plasticity=ConstantBound(750e6))

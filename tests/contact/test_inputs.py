@@ -1,13 +1,14 @@
 """What checks find before anything is solved: each on both sides of its limit, and its values."""
 
 import math
+from dataclasses import asdict
 
 import numpy as np
 import pytest
 
 from contact_keys import contact_of
 from restitution.contact.bodies import Body, Pair
-from restitution.contact.checks.edge import edge_values
+from restitution.contact.checks.edge import edge_predicted
 from restitution.contact.checks.inputs import doubtful, impossible
 from restitution.contact.checks.resolution import predicted_radius
 from restitution.contact.contact import Contact, smooth
@@ -117,8 +118,7 @@ def test_the_first_touch_is_near_an_edge(pair, axis, side):
         return on(pair, height)
 
     found = found_by(spike(0.45), "edge-predicted")
-    expected = edge_values(spike(0.45), DEEP)
-    assert {name: found[name] for name in expected} == expected
+    assert found == edge_predicted(spike(0.45), DEEP, found.gap)
     assert "edge-predicted" not in codes(spike(0.35))
 
 

@@ -14,7 +14,6 @@ from pathlib import Path
 
 import pytest
 
-from restitution.case.models import plasticity_of
 from restitution import Body, Contact, Grid, Pair, collide, generate_surface, smooth, solve, step
 from restitution.case.models import adhesion_of, plasticity_of
 from restitution.contact.jkr.separation import separate
@@ -100,7 +99,7 @@ def compute_nonadhesive(grid, surface, yield_pressure, plasticity):
     contact = Contact(
         Pair(STEEL, STEEL),
         surface_of(surface, grid),
-        plasticity=plasticity_of(plasticity_of(plasticity, yield_pressure), None),
+        plasticity=plasticity_of(plasticity, yield_pressure),
     )
     state = solve(contact, DEPTH)
     collision = collide(state)

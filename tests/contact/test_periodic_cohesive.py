@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 
 from contact_keys import contact_of
 from restitution import Body, Contact, Grid, Pair, Surface, solve, solve_at_pressure, step
-from restitution.contact.cohesive.equilibrium import box_gap, needed_spacing, rigid_start
+from restitution.contact.cohesive.equilibrium import box_gap, rigid_start
 from restitution.contact.cohesive.law import Cohesive
-from restitution.contact.cohesive.path import follow
-from restitution.contact.jkr.separation import separation_of
+from restitution.contact.cohesive.path import follow, separation_of
+from restitution.contact.jkr.limit import JKRLimit
 from restitution.contact.path import unloading_path
 from restitution.errors import CaseError, DomainError
 from restitution.numerics.quadrature import integrate_curve
@@ -224,7 +224,7 @@ def test_a_surface_moved_across_the_boundary_has_the_same_contact():
 
 def test_without_attraction_it_is_the_contact_without_adhesion():
     contact = rough((32, 32), 100, work_of_adhesion=1e-5)
-    without = replace(contact, work_of_adhesion=0.0)
+    without = replace(contact, adhesion=None)
     depth = 0.5 * float(contact.gap.mean())
     state, hard = solve(contact, depth), solve(without, depth)
     # The repulsion gives way by a part of the range.
@@ -235,12 +235,12 @@ def test_without_attraction_it_is_the_contact_without_adhesion():
 
 def test_what_is_refused():
     contact = rough(16, 3)
-    with pytest.raises(CaseError, match='adhesion: "jkr" is not defined for a periodic contact'):
-        replace(contact, adhesion="jkr")
+    with pytest.raises(CaseError, match="adhesion: the JKR limit is not defined"):
+        replace(contact, adhesion=JKRLimit(W))
     with pytest.raises(CaseError, match="contact: the bodies attract each other"):
         solve_at_pressure(contact, 1e8)
     coarse = rough(16, 3, cells=0.31)
-    assert needed_spacing(coarse) == approx(0.3 * LENGTH)
+    assert coarse.adhesion.coarsest_spacing(coarse.pair) == approx(0.3 * LENGTH)
     with pytest.raises(CaseError, match=r"grid.spacing: .* is too coarse for the range"):
         solve(coarse, Z0)
     with pytest.raises(DomainError, match=r"indentation: .* the pressure exceeds E\*"):

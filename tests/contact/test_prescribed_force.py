@@ -7,7 +7,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from restitution.case.models import plasticity_of
 from restitution.contact.contact import Contact, smooth
 from restitution.contact.loading import solve, step
 from restitution.contact.plasticity.bound import ConstantBound
@@ -84,7 +83,7 @@ def test_a_force_on_the_plateau_of_one_yielded_node_has_a_depth(pair):
     grid = Grid((33, 33), (0.25 * UM, 0.25 * UM))
     z = np.zeros(grid.nodes)
     z[16, 16] = 100 * NM
-    contact = Contact(pair, Surface(z, grid), plasticity=plasticity_of(ConstantBound(P_Y), None))
+    contact = Contact(pair, Surface(z, grid), plasticity=ConstantBound(P_Y))
     one = P_Y * grid.cell_area
     depths = []
     for force in (0.9 * one, one, 1.1 * one):

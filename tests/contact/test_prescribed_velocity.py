@@ -3,6 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from contact_keys import models_of
 from restitution.contact.bodies import Body, Pair
 from restitution.contact.contact import Contact, smooth
 from restitution.contact.jkr.limit import JKRLimit
@@ -34,7 +35,7 @@ def _velocity(state):
     ],
 )
 def test_the_velocity_is_met_and_the_depth_found(rough_contact, rms, model, tolerance):
-    contact = replace(rough_contact(rms=rms), **model)
+    contact = replace(rough_contact(rms=rms), **models_of(**model))
     known = solve(contact, 40 * NM)
     found = solve_at_velocity(contact, _velocity(known))
     assert _velocity(found) == approx(_velocity(known), rel=1e-6 if tolerance == 1e-6 else 1e-4)

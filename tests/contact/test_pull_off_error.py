@@ -3,9 +3,9 @@
 import math
 
 import pytest
-from restitution.contact.checks.pull_off import pull_off_error
 
 from restitution import Body, Contact, Grid, Pair, smooth, solve
+from restitution.contact.checks.model_error import pull_off_error
 from restitution.contact.cohesive.law import Cohesive
 from restitution.contact.jkr.limit import JKRLimit
 from tolerance import approx

@@ -5,19 +5,19 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from restitution.case.models import plasticity_of
-from restitution.contact.checks.finding import Finding
 
 from restitution.case.models import adhesion_of
 from restitution.contact.bodies import Body, Pair
-from restitution.contact.checks import resolution
+from restitution.contact.checks.findings import (
+    AdhesionUnresolved,
+    FinerThanScan,
+    PatchesUnresolved,
+)
 from restitution.contact.checks.resolution import (
     NODES_PER_PATCH,
-    adhesive_nodes,
     adhesive_spacing,
     coarse_scan,
     divisions,
-    expected_pull_off_error,
     grid_of_a_scan,
     median_patch,
     predicted_radius,
@@ -27,9 +27,10 @@ from restitution.contact.checks.resolution import (
     unresolved_adhesion,
     unresolved_patches,
 )
+from restitution.contact.cohesive import law
 from restitution.contact.cohesive.law import Cohesive
 from restitution.contact.contact import Contact, smooth
-from restitution.contact.jkr.limit import JKRLimit
+from restitution.contact.jkr.limit import ADHESIVE_NODES, JKRLimit
 from restitution.contact.loading import solve
 from restitution.contact.plasticity.bound import ConstantBound
 from restitution.numerics.grid import Grid
@@ -71,7 +72,7 @@ def contact(pair):
         return Contact(
             pair,
             Surface(np.zeros(grid.nodes), grid, provenance),
-            plasticity=plasticity_of(ConstantBound(yield_pressure), None),
+            plasticity=ConstantBound(yield_pressure),
         )
 
     return make
@@ -116,11 +117,11 @@ def test_a_grid_finer_than_the_scan_is_found(contact):
     assert resolution_findings(contact(pixel_x_m=0.2e-6), deep) == []
     assert resolution_findings(contact(pixel_x_m=0.2015e-6), deep) == []  # rounded by the user
     found = resolution_findings(contact(pixel_x_m=0.5e-6), deep)
-    assert found == [Finding("finer-than-scan", {"spacing": 0.2e-6, "pixel": 0.5e-6})]
+    assert found == [FinerThanScan(spacing=0.2e-6, pixel=0.5e-6)]
     # cells that are finer only because refinement was chosen
     assert resolution_findings(contact(pixel_x_m=0.4e-6, refined=2), deep) == []
     found = resolution_findings(contact(pixel_x_m=0.5e-6, refined=2), deep)
-    assert found == [Finding("finer-than-scan", {"spacing": 0.4e-6, "pixel": 0.5e-6})]
+    assert found == [FinerThanScan(spacing=0.4e-6, pixel=0.5e-6)]
 
 
 def test_a_scan_coarser_than_the_contact_is_found(contact):
@@ -155,22 +156,19 @@ def test_what_is_resolved_is_not_found():
 
 def test_unresolved_depths_are_counted_up_to_the_deepest():
     (found,) = unresolved_patches([1e-9, 5e-9, 20e-9, 40e-9], [1, NODES_PER_PATCH - 1, 3, 90])
-    assert found == Finding("patches-unresolved", {"few": 3, "depths": 4, "deepest": 20e-9})
+    assert found == PatchesUnresolved(few=3, depths=4, deepest=20e-9)
     # rough contacts can lose resolution with depth: the deepest unresolved depth is reported
     (found,) = unresolved_patches([7e-9, 3e-9], [1, 1])
     assert found.deepest == 7e-9
     (found,) = unresolved_adhesion([1e-9, 2e-9, 3e-9], [4e-9, 4e-9, 8e-9], [5e-9, 3e-9, 7e-9], 8e-9)
-    assert found == Finding(
-        "adhesion-unresolved",
-        {
-            "few": 2,
-            "depths": 3,
-            "from": 2e-9,
-            "to": 3e-9,
-            "spacing": 4e-9,
-            "needed": 3e-9,
-            "refine": 4,
-        },
+    assert found == AdhesionUnresolved(
+        few=2,
+        depths=3,
+        first=2e-9,
+        last=3e-9,
+        spacing=4e-9,
+        needed=3e-9,
+        refine=4,
     )
 
 
@@ -203,6 +201,11 @@ def test_nine_tenths_of_both_edges_are_the_whole_scan(contact, size, whole):
     scan = {"size_x_m": wide, "size_y_m": long}
     assert grid_of_a_scan(contact(source="measured", **scan)) is whole
     assert not grid_of_a_scan(contact(source="generated", **scan))
+
+
+def adhesive_nodes(state):
+    """Nodes per pull-off radius of the asperities in contact."""
+    return ADHESIVE_NODES * adhesive_spacing(state) / max(state.contact.grid.spacing)
 
 
 def adhesive(pair, curvatures, nodes=(40, 44)):
@@ -258,14 +261,14 @@ def test_the_error_of_pull_off_is_a_share_of_a_node(pair, detachment, share):
             pair, surface, adhesion=adhesion_of(work_of_adhesion=0.1, detachment=detachment)
         )
         expected = share * max(spacing) / a_c
-        assert expected_pull_off_error(coarse) == approx(expected, rel=1e-9)
+        assert coarse.adhesion.expected_pull_off_error(coarse) == approx(expected, rel=1e-9)
 
 
 @pytest.mark.parametrize("radius", [1e-6, 1e-3])
 def test_the_range_of_the_attraction_is_to_be_resolved_on_asperities(pair, radius, monkeypatch):
     """Cells of half sqrt(r z0) at asperities of radius r, and never more than for smooth bodies."""
     z0 = 0.3e-9
-    monkeypatch.setattr(resolution, "radius_of_asperities", lambda _: radius)
+    monkeypatch.setattr(law, "radius_of_asperities", lambda _: radius)
     largest = min(0.5 * math.sqrt(radius * z0), 0.3 * math.sqrt(pair.radius * z0))
     for share in (0.99, 1.01):
         grid = Grid(8, share * largest)

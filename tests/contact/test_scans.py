@@ -1,6 +1,7 @@
 """Findings about the heights of scans: each on both sides of its limit, and its values."""
 
 import math
+from dataclasses import asdict
 
 import numpy as np
 import pytest

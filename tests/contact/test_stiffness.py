@@ -78,8 +78,8 @@ def test_a_contact_with_attraction(indentation):
 def test_flat_bodies_with_attraction_have_the_stiffness_of_the_law():
     contact = rough(1e-14, 20e-9, work_of_adhesion=0.05, adhesion="cohesive")
     state = rs.solve(contact, 1e-14)
-    law = LennardJones(0.05, contact.equilibrium_separation)
-    z0 = contact.equilibrium_separation
+    law = LennardJones(0.05, contact.adhesion.equilibrium_separation)
+    z0 = contact.adhesion.equilibrium_separation
     k = (float(law.traction(z0 * (1 + 1e-6))) - float(law.traction(z0 * (1 - 1e-6)))) / (2e-6 * z0)
     assert normal_stiffness(state) == approx(k, rel=1e-3)
 

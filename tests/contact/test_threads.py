@@ -29,13 +29,11 @@ def in_threads(work):
         return list(threads.map(begin, range(THREADS)))
 
 
-@pytest.mark.parametrize("adhesion", [0.0, 0.05])
+@pytest.mark.parametrize("adhesion", [None, JKRLimit(0.05)])
 def test_one_contact_in_several_threads_is_the_same_to_the_last_digit(rough_contact, adhesion):
     """All threads load one contact to the same depth and unload it a little."""
     plain = rough_contact((170, 180), (0.08e-6, 0.08e-6), yield_pressure=2e9)
-    contact = Contact(
-        plain.pair, plain.surface, plasticity=ConstantBound(2e9), adhesion=JKRLimit(adhesion)
-    )
+    contact = Contact(plain.pair, plain.surface, plasticity=ConstantBound(2e9), adhesion=adhesion)
 
     def work(_):
         state = solve(contact, DEPTH)

@@ -6,16 +6,15 @@ import re
 import numpy as np
 import pytest
 
-from restitution.case.models import plasticity_of
 from restitution import Body, Contact, Grid, Pair, Surface, generate_surface, smooth
 from restitution.case.case_file import parse_case
+from restitution.case.models import adhesion_of
 from restitution.contact.checks.resolution import (
     NODES_PER_PATCH,
     NODES_PER_RADIUS,
     unresolved_adhesion,
     unresolved_patches,
 )
-from restitution.contact.jkr.limit import JKRLimit
 from restitution.contact.path import loading_path
 from restitution.contact.plasticity.bound import ConstantBound
 from restitution.errors import CaseError, DomainError, NotConvergedError, SurfaceError
@@ -39,17 +38,12 @@ def measured(height, **provenance):
     return Contact(
         STEEL,
         Surface(height, GRID, provenance),
-        plasticity=plasticity_of(ConstantBound(750e6), None),
+        plasticity=ConstantBound(750e6),
     )
 
 
 def test_a_good_contact_is_let_pass():
-    assert (
-        input_warnings(
-            Contact(STEEL, smooth(GRID), plasticity=plasticity_of(ConstantBound(750e6), None)), 4e-7
-        )
-        == []
-    )
+    assert input_warnings(Contact(STEEL, smooth(GRID), plasticity=ConstantBound(750e6)), 4e-7) == []
     assert input_warnings(Contact(STEEL, smooth(GRID)), 4e-7) == []
     assert input_warnings(measured(ROUGH), 4e-7) == []
 
@@ -90,9 +84,7 @@ def test_impossible_slopes_name_the_unit():
     steep = 1000 * ROUGH
     unscanned = Surface(steep, GRID, {"source": "generated"})
     with pytest.raises(SurfaceError, match=r"slope is 2\d.*above 3 .*the unit of roughness\.rms"):
-        require_possible(
-            Contact(STEEL, unscanned, plasticity=plasticity_of(ConstantBound(750e6), None)), 4e-7
-        )
+        require_possible(Contact(STEEL, unscanned, plasticity=ConstantBound(750e6)), 4e-7)
     with pytest.raises(SurfaceError, match=r"the unit of the heights in scan\.npy"):
         require_possible(measured(steep), 4e-7)
     (line,) = surface_warnings(unscanned)
@@ -102,7 +94,7 @@ def test_impossible_slopes_name_the_unit():
 def test_contact_at_the_rim_is_foreseen_where_smooth_bodies_would_not_have_it():
     bump = 8e-7 * np.exp(-(((X + 14e-6) / 1e-6) ** 2) - (Y / 1e-6) ** 2)
     lines = input_warnings(
-        Contact(STEEL, Surface(bump, GRID), plasticity=plasticity_of(ConstantBound(750e6), None)),
+        Contact(STEEL, Surface(bump, GRID), plasticity=ConstantBound(750e6)),
         1e-7,
     )
     assert len(lines) == 1
@@ -111,12 +103,12 @@ def test_contact_at_the_rim_is_foreseen_where_smooth_bodies_would_not_have_it():
     # a ridge that is lower than the centre, but not by enough
     ridge = 3.5e-7 * np.exp(-(((X - 15e-6) / 2e-6) ** 2)) + 0 * Y
     (line,) = input_warnings(
-        Contact(STEEL, Surface(ridge, GRID), plasticity=plasticity_of(ConstantBound(750e6), None)),
+        Contact(STEEL, Surface(ridge, GRID), plasticity=ConstantBound(750e6)),
         4e-7,
     )
     assert "the gap there is 151.7 nm" in line
     (line,) = input_warnings(
-        Contact(STEEL, Surface(ridge, GRID), plasticity=plasticity_of(ConstantBound(750e6), None)),
+        Contact(STEEL, Surface(ridge, GRID), plasticity=ConstantBound(750e6)),
         5e-8,
     )
     assert "has only 7.5 nodes at the spacing" in line
@@ -136,7 +128,7 @@ def test_what_reaches_the_edge_is_foreseen_before(yield_pressure, rms, work_of_a
             STEEL,
             surface,
             plasticity=ConstantBound(yield_pressure),
-            adhesion=JKRLimit(work_of_adhesion),
+            adhesion=adhesion_of(work_of_adhesion=work_of_adhesion),
         )
         said = input_warnings(contact, 1e-7)
         predicted = any("predicted to reach" in line for line in said)
@@ -158,7 +150,7 @@ def test_steep_surfaces():
 @pytest.mark.parametrize(("yield_pressure", "said"), [(750e3, "6.7e-06"), (750e9, "6.7")])
 def test_a_yield_pressure_that_no_such_body_has(yield_pressure, said):
     lines = input_warnings(
-        Contact(STEEL, smooth(GRID), plasticity=plasticity_of(ConstantBound(yield_pressure), None)),
+        Contact(STEEL, smooth(GRID), plasticity=ConstantBound(yield_pressure)),
         1e-7,
     )
     assert len(lines) == 1
@@ -278,9 +270,7 @@ def scan(height, **provenance):
 
 
 def test_the_edge_is_reached_on_a_grid_that_can_grow():
-    words = refusal(
-        Contact(STEEL, smooth(COARSE), plasticity=plasticity_of(ConstantBound(750e6), None)), 2e-6
-    )
+    words = refusal(Contact(STEEL, smooth(COARSE), plasticity=ConstantBound(750e6)), 2e-6)
     assert re.search(
         r"; use a grid of about [\d.]+ um \(more grid\.nodes or a larger grid\.sp", words
     )

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from contact_keys import contact_of
-from restitution.case.models import plasticity_of
 from restitution import (
     Body,
     Contact,
@@ -20,7 +19,7 @@ from restitution import (
     unloading_path,
 )
 from restitution.case.models import adhesion_of, plasticity_of
-from restitution.contact.checks.resolution import ADHESIVE_NODES, adhesive_nodes
+from restitution.contact.checks.resolution import adhesive_spacing, resolves_adhesion
 from restitution.contact.jkr.detachment import tension_limit
 from restitution.contact.jkr.limit import HertzianApproach, JKRLimit
 from restitution.contact.jkr.separation import separate, separation_of
@@ -107,9 +106,9 @@ def test_the_paper_does_not_resolve_its_adhesion(spacing, resolved):
         square(12e-9, spacing, yield_pressure=0.75e9, work_of_adhesion=0.09, approach="hertzian"),
         12e-9,
     )
-    assert (adhesive_nodes(state) >= ADHESIVE_NODES) is resolved
+    assert resolves_adhesion(state) is resolved
     a_c = float(JKR(R, E_STAR, 0.09).pull_off_radius)
-    assert adhesive_nodes(state) == approx(a_c / spacing, rel=1e-6)
+    assert adhesive_spacing(state) == approx(a_c / 4, rel=1e-6)
 
 
 def test_roughness_takes_the_effect_of_adhesion_away():
@@ -153,7 +152,7 @@ def test_no_adhesion_is_the_contact_without(approach, detachment, plasticity):
         grid, kind="gaussian", rms=0.03e-6, correlation_length=1.5e-6, seed=2
     )
     plain = solve(
-        Contact(PAIR, surface, plasticity=plasticity_of(plasticity_of(plasticity, 1e9), None)),
+        Contact(PAIR, surface, plasticity=plasticity_of(plasticity, 1e9)),
         60e-9,
     )
     named = solve(

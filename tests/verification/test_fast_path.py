@@ -33,7 +33,7 @@ def plain_pressure(contact, depth):
     arguments = contact.grid.nodes, contact.grid.spacing, contact.pair.contact_modulus
     b = depth - contact.gap
     found = minimise_quadratic(
-        BoundedQuadratic(half_space(*arguments), b, 0.0, contact.yield_pressure),
+        BoundedQuadratic(half_space(*arguments), b, 0.0, contact.hardness),
         start=np.zeros_like(b),
         precondition=inverse_half_space(*arguments),
         tolerance=1e-9 * depth,

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from restitution.case.models import plasticity_of
 from restitution import Body, Contact, Grid, Pair, collide, generate_surface, refine, solve
 from restitution.contact.checks.resolution import median_patch, resolves
 from restitution.contact.plasticity.bound import ConstantBound
@@ -26,7 +25,7 @@ def curves():
             Contact(
                 Pair(STEEL, STEEL),
                 refine(coarse, k),
-                plasticity=plasticity_of(ConstantBound(750e6), None),
+                plasticity=ConstantBound(750e6),
             )
             for k in FACTORS
         ]
@@ -71,7 +70,7 @@ def test_contacts_that_are_not_resolved_have_not(curves):
 def test_a_contact_of_one_node_is_never_resolved():
     coarse = generate_surface(GRID, kind="exponential", rms=0.1e-6, correlation_length=2e-6, seed=1)
     state = solve(
-        Contact(Pair(STEEL, STEEL), coarse, plasticity=plasticity_of(ConstantBound(750e6), None)),
+        Contact(Pair(STEEL, STEEL), coarse, plasticity=ConstantBound(750e6)),
         8e-9,
     )
     assert state.contact_nodes < 20

@@ -4,7 +4,6 @@ import math
 
 import pytest
 
-from restitution.case.models import plasticity_of
 from restitution import Body, Contact, Grid, Pair, collide, smooth, solve
 from restitution.case.models import plasticity_of
 from restitution.contact.plasticity.bound import ConstantBound
@@ -23,7 +22,7 @@ def at(pair, x, nodes_over_yield_radius, p_y=P_Y, plasticity="equilibrium"):
     contact = Contact(
         pair,
         smooth(Grid((n, n), (h, h))),
-        plasticity=plasticity_of(plasticity_of(plasticity, p_y), None),
+        plasticity=plasticity_of(plasticity, p_y),
     )
     return solve(contact, x * depth_y), depth_y, float(onset.force)
 
@@ -102,7 +101,7 @@ def test_equilibrium_follows_finite_elements(ratio, omega):
     contact = Contact(
         pair,
         smooth(Grid((151, 151), (h, h))),
-        plasticity=plasticity_of(ConstantBound(2.8 * strength), None),
+        plasticity=ConstantBound(2.8 * strength),
     )
     force = float(fit.loading_force(depth))
     assert solve(contact, depth).force == approx(force, rel=0.09)

@@ -6,8 +6,9 @@ in this project needs them. `contact.py` solves; here are the surfaces, the load
 Units inside: micrometre, MPa, hence micronewton; files are in SI units.
 """
 
-from restitution.case.models import plasticity_of
 import os
+
+from restitution.case.models import plasticity_of
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 import argparse

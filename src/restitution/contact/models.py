@@ -272,9 +272,11 @@ class Adhesion(ABC):
         return 0.0
 
 
-def set_field(model: Plasticity | Adhesion, name: str, unit: str) -> None:
+def set_field(
+    model: Plasticity | Adhesion, name: str, unit: str, *, finite: bool = True
+) -> None:
     """Make a field a positive Python float, which the compiled loops need, or raise `CaseError`."""
     value = float(getattr(model, name))
-    if not 0 < value < math.inf:
-        raise CaseError(f"{name}: {value} {unit} is not positive and finite")
+    if not value > 0 or (finite and value == math.inf):
+        raise CaseError(f"{name}: {value} {unit} is not positive{' and finite' * finite}")
     object.__setattr__(model, name, value)

@@ -45,7 +45,7 @@ class ConstantBound(Plasticity):
 
     Attributes:
         yield_pressure: Pressure (Pa) at which the surface yields: a hardness, about 2.8 times the
-            yield strength.
+            yield strength; inf for elastic bodies.
 
     Raises:
         CaseError: The yield pressure is not positive.
@@ -57,7 +57,7 @@ class ConstantBound(Plasticity):
     bytes_per_node = 140.0
 
     def __post_init__(self) -> None:
-        set_field(self, "yield_pressure", "Pa")
+        set_field(self, "yield_pressure", "Pa", finite=False)
 
     @property
     def hardness(self) -> float:
@@ -65,6 +65,8 @@ class ConstantBound(Plasticity):
         return self.yield_pressure
 
     def describe(self) -> str:
+        if math.isinf(self.yield_pressure):
+            return "elastic"
         return f"yield pressure {quantity(self.yield_pressure, 'Pa')} ({self.label})"
 
     def difference(self, contact: Contact, restitution: float) -> float:
