@@ -36,6 +36,8 @@ from restitution import (
     solve,
 )
 from restitution.case.case_file import read_case
+from restitution.contact.jkr.limit import JKRLimit
+from restitution.contact.plasticity.bound import ConstantBound
 
 ROOT = Path(__file__).parents[1]
 EXAMPLE = ROOT / "benchmarks" / "steel.toml"
@@ -87,7 +89,9 @@ def adhesive(rms: float) -> Contact:
     surface = smooth(GRID)
     if rms > 0:
         surface = generate_surface(GRID, kind="gaussian", rms=rms, correlation_length=2e-6, seed=1)
-    return Contact(Pair(STEEL, STEEL), surface, 750e6, work_of_adhesion=0.09)
+    return Contact(
+        Pair(STEEL, STEEL), surface, plasticity=ConstantBound(750e6), adhesion=JKRLimit(0.09)
+    )
 
 
 def add(tally: Tally, state) -> None:

@@ -19,6 +19,7 @@ from unit import machine, today
 
 from compare import OURS, PROGRAMS, RESIDUAL, ROOT, Worker, compare, power, short
 from restitution import Body, Contact, Grid, Pair, generate_surface, solve_at_pressure
+from restitution.contact.plasticity.bound import ConstantBound
 from restitution.surfaces import rms_slope
 
 WALL = Body(radius=math.inf, youngs_modulus=210e9, poissons_ratio=0.25)
@@ -82,7 +83,12 @@ def problems(n: int) -> list[Problem]:
     E_star = FLAT.contact_modulus
     unit, found = E_star * rms_slope(surface), []
     for name, pressure, limit in CASES:
-        contact = Contact(FLAT, surface, limit * unit, periodic=True)
+        contact = Contact(
+            FLAT,
+            surface,
+            plasticity=ConstantBound(limit * unit),
+            periodic=True,
+        )
         state = solve_at_pressure(contact, pressure * unit, residual=1e-10)
         found.append(
             Problem(
@@ -90,7 +96,7 @@ def problems(n: int) -> list[Problem]:
                 contact.gap,
                 SPACING,
                 E_star,
-                contact.yield_pressure,
+                contact.hardness,
                 state.indentation,
                 math.inf,
                 state.force,

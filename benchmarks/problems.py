@@ -15,6 +15,7 @@ import numpy as np
 import scipy.fft
 
 from restitution import Body, Contact, Grid, Pair, generate_surface, smooth, solve
+from restitution.contact.plasticity.bound import ConstantBound
 
 SPACING = 0.25e-6
 FORCE = 1e-6  # largest relative error of a prescribed force
@@ -77,7 +78,11 @@ def all_problems(n: int) -> list[Problem]:
     cases = (
         ("elastic smooth", Contact(PAIR, flat), 10e-6),
         ("elastic rough", Contact(PAIR, rough), 10e-6),
-        ("plastic smooth", Contact(PAIR, flat, yield_pressure=750e6), 20e-6),
+        (
+            "plastic smooth",
+            Contact(PAIR, flat, plasticity=ConstantBound(750e6)),
+            20e-6,
+        ),
     )
     return [_problem(name, contact, a**2 / PAIR.radius) for name, contact, a in cases]
 
@@ -88,7 +93,7 @@ def _problem(name: str, contact: Contact, indentation: float) -> Problem:
         contact.gap,
         SPACING,
         PAIR.contact_modulus,
-        contact.yield_pressure,
+        contact.hardness,
         indentation,
         PAIR.radius,
         solve(contact, indentation, residual=1e-11).force,

@@ -23,6 +23,7 @@ import scipy.fft
 from unit import machine, measure_unit, today
 
 from restitution import Body, Contact, Grid, Pair, Surface, generate_surface, operator_cache, solve
+from restitution.contact.plasticity.bound import ConstantBound
 
 OUT = Path(__file__).parent
 COARSEST = 256
@@ -107,7 +108,10 @@ def measure(n: int, limit: str, depth: str) -> dict:
     while len(times) <= FEWEST or (sum(times) < REPEAT_SECONDS and len(times) <= MOST):
         operator_cache.clear()
         began = time.perf_counter()
-        state = solve(Contact(PAIR, surface, yield_pressure=LIMITS[limit]), delta)
+        state = solve(
+            Contact(PAIR, surface, plasticity=ConstantBound(LIMITS[limit])),
+            delta,
+        )
         times.append(time.perf_counter() - began)
         box = "x".join(str(part.stop - part.start) for part in state.box)
         found = {

@@ -6,10 +6,13 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
+from contact_keys import contact_of
 from restitution.collision import Collision, collide
 from restitution.contact.bodies import Body, Pair
 from restitution.contact.contact import Contact, smooth
+from restitution.contact.jkr.limit import HertzianApproach, JKRLimit
 from restitution.contact.loading import solve, step
+from restitution.contact.plasticity.truncated import Truncated
 from restitution.numerics.grid import Grid
 from tolerance import approx
 
@@ -18,7 +21,7 @@ STEEL = Body(500 * UM, 210e9, 0.25, density=7850.0)
 
 
 def contact(first=STEEL, second=STEEL, **options):
-    return Contact(Pair(first, second), smooth(Grid((25, 23), (0.5 * UM, 0.5 * UM))), **options)
+    return contact_of(Pair(first, second), smooth(Grid((25, 23), (0.5 * UM, 0.5 * UM))), **options)
 
 
 def test_values_worked_out_by_hand():
@@ -103,7 +106,7 @@ def test_the_way_to_the_deepest_point_does_not_matter():
 
 def test_no_collision_returns_more_than_it_took():
     grid = Grid((41, 41), (0.25 * UM, 0.25 * UM))
-    below_yield = Contact(Pair(STEEL, STEEL), smooth(grid), 1e12, "truncated")
+    below_yield = Contact(Pair(STEEL, STEEL), smooth(grid), plasticity=Truncated(1e12))
     assert collide(solve(below_yield, 20 * NM)).restitution <= 1 + 1e-8
 
 
@@ -120,7 +123,9 @@ def test_the_errors_of_both_works_move_restitution():
 def test_the_energy_estimate_may_be_off_by_the_surface_energy():
     grid = Grid((48, 48), (0.25e-6, 0.25e-6))
     body = Body(500e-6, 210e9, 0.3)
-    contact = Contact(Pair(body, body), smooth(grid), work_of_adhesion=0.05, approach="hertzian")
+    contact = Contact(
+        Pair(body, body), smooth(grid), adhesion=JKRLimit(0.05, approach=HertzianApproach())
+    )
     state = solve(contact, 2e-8)
     estimate = collide(state, method="energy-estimate")
     assert estimate.unloading_work_error == approx(0.05 * state.contact_area, rel=1e-12)

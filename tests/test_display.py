@@ -11,7 +11,7 @@ from restitution.results.reader import RunResults
 STEEL = rs.Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25, density=7850)
 GRID = rs.Grid((64, 48), (0.5e-6, 1e-6))
 SURFACE = rs.generate_surface(GRID, kind="gaussian", rms=50e-9, correlation_length=3e-6, seed=1)
-CONTACT = rs.Contact(rs.Pair(STEEL, STEEL), SURFACE, yield_pressure=750e6)
+CONTACT = rs.Contact(rs.Pair(STEEL, STEEL), SURFACE, plasticity=rs.ConstantBound(750e6))
 STATE = rs.solve(CONTACT, indentation=100e-9)
 
 
@@ -55,7 +55,12 @@ def test_nouns_are_counted():
         (CONTACT, ["yield pressure 750 MPa (equilibrium)", "gaussian, Sq 50 nm; 64 × 48"]),
         (rs.Contact(CONTACT.pair, SURFACE), ["\n  elastic\n"]),
         (
-            rs.Contact(CONTACT.pair, SURFACE, yield_strength=268e6, work_of_adhesion=0.05),
+            rs.Contact(
+                CONTACT.pair,
+                SURFACE,
+                plasticity=rs.ExpandingCavity(268e6),
+                adhesion=rs.JKRLimit(0.05),
+            ),
             ["yield strength 268 MPa (expanding-cavity), work of adhesion 50 mJ/m²"],
         ),
         (STATE, ["indentation 100 nm, force ", " mN", "contact area ", " µm² (", "pJ"]),

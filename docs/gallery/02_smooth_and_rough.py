@@ -32,7 +32,7 @@ for colour, rms in zip(("0.5", "C0", "C1", "C3"), (0, 0.05e-6, 0.1e-6, 0.3e-6), 
         surface = rs.generate_surface(
             grid, kind="gaussian", rms=rms, correlation_length=4e-6, seed=1
         )
-    contact = rs.Contact(pair, surface, yield_strength=290e6)
+    contact = rs.Contact(pair, surface, plasticity=rs.ExpandingCavity(290e6))
     states = list(rs.loading_path(contact, velocities=velocities))
     e = np.array([rs.collide(state).restitution for state in states])
     resolved = np.array([median_patch(state) >= 20 for state in states])

@@ -15,7 +15,7 @@ import restitution as rs
 steel = rs.Body(radius=0.5e-3, youngs_modulus=193e9, poissons_ratio=0.29, density=8000)
 grid = rs.Grid(nodes=(320, 320), spacing=(0.25e-6, 0.25e-6))
 surface = rs.generate_surface(grid, kind="gaussian", rms=0.2e-6, correlation_length=4e-6, seed=2)
-contact = rs.Contact(rs.Pair(steel, steel), surface, yield_strength=290e6)
+contact = rs.Contact(rs.Pair(steel, steel), surface, plasticity=rs.ExpandingCavity(290e6))
 
 fig, axes = plt.subplots(1, 3, figsize=(9, 3.4), layout="constrained", sharey=True)
 for ax, state in zip(axes, rs.loading_path(contact, velocities=[0.02, 0.1, 0.5]), strict=True):

@@ -23,7 +23,7 @@ for i, velocity in enumerate(velocities):
     spacing, e, resolved = [], [], []
     for factor in (1, 2, 4, 8):
         finer = rs.refine(surface, factor)
-        contact = rs.Contact(pair, finer, yield_strength=290e6)
+        contact = rs.Contact(pair, finer, plasticity=rs.ExpandingCavity(290e6))
         state = rs.solve_at_velocity(contact, velocity)
         sizes = state.patch_sizes()
         spacing.append(1e6 * finer.grid.spacing[0])

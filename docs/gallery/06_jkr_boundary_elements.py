@@ -19,7 +19,7 @@ work_of_adhesion = 0.05
 jkr = JKR(pair.radius, pair.contact_modulus, work_of_adhesion)
 
 grid = rs.Grid(nodes=(64, 64), spacing=(16e-9, 16e-9))
-contact = rs.Contact(pair, rs.smooth(grid), work_of_adhesion=work_of_adhesion)
+contact = rs.Contact(pair, rs.smooth(grid), adhesion=rs.JKRLimit(work_of_adhesion))
 path = list(rs.unloading_path(rs.solve(contact, 8e-9), tolerance=0.02))
 depth = np.array([state.indentation for state in path])
 force = np.array([state.force for state in path])

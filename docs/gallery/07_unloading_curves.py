@@ -18,7 +18,7 @@ rough = rs.generate_surface(grid, kind="gaussian", rms=0.2e-6, correlation_lengt
 
 fig, ax = plt.subplots(layout="constrained")
 for i, (name, surface) in enumerate({"smooth": rs.smooth(grid), "rough": rough}.items()):
-    contact = rs.Contact(rs.Pair(steel, steel), surface, yield_strength=290e6)
+    contact = rs.Contact(rs.Pair(steel, steel), surface, plasticity=rs.ExpandingCavity(290e6))
     loading = list(rs.loading_path(contact, np.linspace(50e-9, 800e-9, 8)))
     depth = [0] + [1e9 * state.indentation for state in loading]
     ax.plot(depth, [0] + [state.force for state in loading], f"C{i}o-", ms=3, label=name)

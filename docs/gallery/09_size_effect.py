@@ -28,7 +28,10 @@ for radius in sizes / 2:
     ]
     found = [
         rs.collide(
-            rs.solve_at_velocity(rs.Contact(pair, one, yield_strength=290e6), velocity)
+            rs.solve_at_velocity(
+                rs.Contact(pair, one, plasticity=rs.ExpandingCavity(290e6)),
+                velocity,
+            )
         ).restitution
         for one in surfaces
     ]

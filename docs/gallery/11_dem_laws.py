@@ -19,7 +19,7 @@ steel = rs.Body(radius=0.5e-3, youngs_modulus=193e9, poissons_ratio=0.29, densit
 pair = rs.Pair(steel, steel)
 grid = rs.Grid(nodes=(256, 256), spacing=(0.5e-6, 0.5e-6))
 surface = rs.generate_surface(grid, kind="gaussian", rms=0.2e-6, correlation_length=5e-6, seed=1)
-contact = rs.Contact(pair, surface, yield_strength=290e6)
+contact = rs.Contact(pair, surface, plasticity=rs.ExpandingCavity(290e6))
 velocities = np.geomspace(0.01, 1, 9)
 e = [rs.collide(state).restitution for state in rs.loading_path(contact, velocities=velocities)]
 

@@ -23,7 +23,7 @@ for seed in range(12):
     surface = rs.generate_surface(
         grid, kind="gaussian", rms=0.2e-6, correlation_length=5e-6, seed=seed
     )
-    contact = rs.Contact(pair, surface, yield_strength=290e6)
+    contact = rs.Contact(pair, surface, plasticity=rs.ExpandingCavity(290e6))
     states = rs.loading_path(contact, velocities=velocities)
     curves.append([rs.collide(state).restitution for state in states])
 

@@ -11,6 +11,8 @@ import numpy as np
 from evidence.shared import PAIR, write_image, write_table
 from restitution import Contact, Grid, collide, generate_surface, loading_path, smooth
 from restitution.contact.checks.resolution import ADHESIVE_NODES, adhesive_nodes
+from restitution.contact.jkr.limit import JKRLimit
+from restitution.contact.plasticity.bound import ConstantBound
 from restitution.plots.cor import cor_axis
 from restitution.plots.figure import (
     DASHED,
@@ -36,7 +38,12 @@ def smooth_rows():
         h = a_c / 5
         n = 2 * int(1.25 * np.sqrt(1.5 * PAIR.radius * SMOOTH_DEPTHS[-1]) / h)
         for p_y in (750e6, 1500e6):
-            contact = Contact(PAIR, smooth(Grid((n, n), (h, h))), p_y, work_of_adhesion=w)
+            contact = Contact(
+                PAIR,
+                smooth(Grid((n, n), (h, h))),
+                plasticity=ConstantBound(p_y),
+                adhesion=JKRLimit(w),
+            )
             yield from rows_of("smooth", contact, SMOOTH_DEPTHS)
 
 
@@ -47,7 +54,7 @@ def rough_rows():
         grid, kind="exponential", rms=0.1e-6, correlation_length=2e-6, seed=1
     )
     for w in (0.01, 0.09):
-        contact = Contact(PAIR, surface, 750e6, work_of_adhesion=w)
+        contact = Contact(PAIR, surface, plasticity=ConstantBound(750e6), adhesion=JKRLimit(w))
         yield from rows_of("rough", contact, ROUGH_DEPTHS)
 
 
@@ -57,8 +64,8 @@ def rows_of(surface, contact, depths):
         collision = collide(state)
         yield {
             "surface": surface,
-            "work_of_adhesion_J_per_m2": contact.work_of_adhesion,
-            "yield_pressure_Pa": contact.yield_pressure,
+            "work_of_adhesion_J_per_m2": contact.adhesion.work_of_adhesion,
+            "yield_pressure_Pa": contact.hardness,
             "spacing_m": contact.grid.spacing[0],
             "indentation_m": state.indentation,
             "restitution": collision.restitution,

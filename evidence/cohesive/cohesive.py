@@ -16,11 +16,13 @@ import numpy as np
 
 from evidence.shared import write_image, write_table
 from restitution import Body, Contact, Grid, Pair, Surface, collide, generate_surface, smooth, solve
-from restitution.contact.cohesive import COMPANION
-from restitution.contact.model_error import hysteresis_ratio, model_error
+from restitution.contact.checks.model_error import hysteresis_ratio, model_error
+from restitution.contact.cohesive.equilibrium import COMPANION
+from restitution.contact.jkr.limit import JKRLimit
+from restitution.contact.jkr.separation import separation_of
 from restitution.contact.path import unloading_path
-from restitution.contact.prescribed_velocity import solve_at_velocity
-from restitution.contact.separation import separation_of
+from restitution.contact.plasticity.bound import ConstantBound
+from restitution.contact.prescribed.velocity import solve_at_velocity
 from restitution.errors import RestitutionError
 from restitution.numerics.quadrature import integrate_curve
 from restitution.plots.figure import DASHED, GREY, ORANGE, Axis, Chart, Figure, Line, Points
@@ -58,7 +60,7 @@ def cycle(contact, indentation):
     """Energy lost in a cycle, and pull-off force; both over their values by JKR."""
     state = solve(contact, indentation)
     path = list(unloading_path(state))
-    jkr = JKR(contact.pair.radius, contact.pair.contact_modulus, contact.work_of_adhesion)
+    jkr = JKR(contact.pair.radius, contact.pair.contact_modulus, contact.adhesion.work_of_adhesion)
     if contact.cohesive:
         lost = path[-1].adhesive_loss
     else:
@@ -131,7 +133,7 @@ def sticking():
     pair = pair_of(2.0)
     jkr = JKR(pair.radius, E_STAR, W)
     h = float(jkr.pull_off_radius) / 8
-    contact = Contact(pair, smooth(Grid(64, h)), work_of_adhesion=W)
+    contact = Contact(pair, smooth(Grid(64, h)), adhesion=JKRLimit(W))
     lost, pull_off = cycle(contact, -3 * float(jkr.break_indentation))
     rows.append(
         {
@@ -194,7 +196,7 @@ def joined():
             depth = times * length
             n = 2 * int(math.sqrt(3 * depth * pair.radius) / h + 4)
             contact = Contact(
-                pair, smooth(Grid(n, h)), work_of_adhesion=W, equilibrium_separation=Z0
+                pair, smooth(Grid(n, h)), adhesion=JKRLimit(W, equilibrium_separation=Z0)
             )
             state = solve(contact, depth)
             collision = collide(state)
@@ -235,7 +237,9 @@ def rough():
             )
             # The cells are 0.4 times the cohesive zone of glass; a case permits 0.3.
             surface = Surface(surface.height, grid, {**surface.provenance, COMPANION: 1.0})
-            base = Contact(Pair(body, body), surface, p_y, work_of_adhesion=W)
+            base = Contact(
+                Pair(body, body), surface, plasticity=ConstantBound(p_y), adhesion=JKRLimit(W)
+            )
             for depth in (2e-9, 6e-9):
                 row = {"material": material, "rms_nm": 1e9 * rms, "indentation_nm": 1e9 * depth}
                 for mode in ("cohesive", "jkr"):
@@ -288,7 +292,7 @@ def balance():
                 "tabor_parameter": round(tabor, 3),
                 "depth_over_z0": round(depth, 3),
                 "rms_over_z0": round(rms / Z0, 2),
-                "yield_pressure_GPa": contact.yield_pressure / 1e9,
+                "yield_pressure_GPa": contact.hardness / 1e9,
                 "stored_energy_J": f"{state.stored_energy:.5e}",
                 "interaction_energy_J": f"{state.interaction_energy:.5e}",
                 "loading_work_J": f"{state.loading_work:.5e}",

@@ -10,6 +10,7 @@ from scipy.stats import linregress, t
 
 from evidence.shared import PAIR, STEEL, write_image, write_table
 from restitution import Contact, Grid, collide, generate_surface, smooth, solve
+from restitution.contact.plasticity.bound import ConstantBound
 from restitution.plots.figure import (
     DASHED,
     PALETTE,
@@ -71,7 +72,7 @@ def fit(length, x, y):
 
 def main():
     """Compute, print and draw."""
-    reference = restitutions(Contact(PAIR, smooth(GRID), 750e6))
+    reference = restitutions(Contact(PAIR, smooth(GRID), plasticity=ConstantBound(750e6)))
     table = []
     for length in LENGTHS:
         for rms in ROUGHNESS:
@@ -79,7 +80,11 @@ def main():
                 surface = generate_surface(
                     GRID, kind="gaussian", rms=rms, correlation_length=length, seed=seed
                 )
-                off = restitutions(Contact(PAIR, surface, 750e6)) / reference - 1
+                off = (
+                    restitutions(Contact(PAIR, surface, plasticity=ConstantBound(750e6)))
+                    / reference
+                    - 1
+                )
                 table.append(
                     {
                         "correlation_length_m": length,

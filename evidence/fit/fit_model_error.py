@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from restitution.contact.model_error import relative_model_error
+from restitution.contact.checks.model_error import relative_model_error
 
 MODELS = Path(__file__).parents[1] / "plasticity_models" / "models.csv"
 FEWEST = 4  # smallest number of depths of a fit

@@ -13,6 +13,7 @@ import numpy as np
 
 from evidence.shared import write_table
 from restitution import Body, Contact, Grid, Pair, collide, smooth, solve
+from restitution.contact.jkr.limit import JKRLimit
 from restitution.theory import JKR
 
 SEED, CASES, LARGEST_GRID = 20261125, 40, 300
@@ -32,7 +33,7 @@ def cases() -> list[tuple[Contact, JKR, float, float]]:
         nodes = int(3.2 * math.sqrt(pair.radius * depth + 4 * a_c**2) / h) + 8
         if nodes <= LARGEST_GRID:
             surface = smooth(Grid((nodes, nodes), (h, h)))
-            found.append((Contact(pair, surface, work_of_adhesion=w), jkr, depth, cells))
+            found.append((Contact(pair, surface, adhesion=JKRLimit(w)), jkr, depth, cells))
     return found
 
 

@@ -16,9 +16,9 @@ from pathlib import Path
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from restitution.contact.perimeter import corrected_area
 
 from restitution import Body, Contact, Grid, Pair, Surface, generate_surface, solve_at_pressure
-from restitution.contact.perimeter import corrected_area
 from restitution.theory import Persson
 
 HERE = Path(__file__).parent

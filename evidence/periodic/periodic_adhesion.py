@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 
 import restitution as rs
-from restitution.contact.cohesive import COMPANION
-from restitution.contact.separation import separate, separation_of
+from restitution.contact.cohesive.equilibrium import COMPANION
+from restitution.contact.jkr.separation import separate, separation_of
 from restitution.theory import LennardJones
 
 WORK = 0.05  # J/m²
@@ -33,7 +33,7 @@ def line(rms: float, cells: int) -> str:
     surface = rs.refine(coarse, cells) if cells > 1 else coarse
     # Cells of 75 nm are coarser than the program accepts, except for a comparison of grids.
     surface = rs.Surface(surface.height, surface.grid, {COMPANION: True})
-    contact = rs.Contact(PAIR, surface, work_of_adhesion=WORK, adhesion="cohesive", periodic=True)
+    contact = rs.Contact(PAIR, surface, adhesion=rs.Cohesive(WORK), periodic=True)
     state = rs.solve(contact, 0.9 * float(contact.gap.mean()))
     found = separation_of(list(separate(state)))
     per_area = 1 / (WORK * math.prod(contact.grid.size))

@@ -12,8 +12,9 @@ import numpy as np
 
 from evidence.shared import write_table
 from restitution import Body, Contact, Grid, Pair, Surface, solve
+from restitution.case.models import adhesion_of
+from restitution.contact.jkr.separation import separate, separation_of
 from restitution.contact.loading import step
-from restitution.contact.separation import separate, separation_of
 from restitution.theory import JKR
 
 OFFSETS = ((0, 0), (0.5, 0.5), (0.5, 0), (0.23, 0.41), (0.37, 0.12), (0.08, 0.29))
@@ -37,7 +38,11 @@ def sphere(nodes_over_pull_off_radius, offset, detachment, depth, approach="hert
     shifted = (x - offset[0] * h) ** 2 + (y - offset[1] * h) ** 2
     height = (x * x + y * y - shifted) / (2 * pair.radius)
     surface = Surface(height, grid, {"source": "shifted apex"})
-    contact = Contact(pair, surface, work_of_adhesion=W, approach=approach, detachment=detachment)
+    contact = Contact(
+        pair,
+        surface,
+        adhesion=adhesion_of(work_of_adhesion=W, approach=approach, detachment=detachment),
+    )
     return contact, deep
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from evidence.shared import PAIR, write_image, write_table
 from restitution import Contact, Grid, collide, generate_surface, refine, solve
 from restitution.contact.checks.resolution import NODES_PER_PATCH, median_patch
+from restitution.contact.plasticity.bound import ConstantBound
 from restitution.plots.figure import GREY, Axis, Band, Chart, Figure, Mark, Points
 from restitution.runs.convergence import discretisation
 
@@ -33,7 +34,10 @@ def rows():
     for number, kind in enumerate(SURFACES):
         for seed in SEEDS:
             coarse = generate_surface(GRID, seed=seed, **kind)
-            contacts = {k: Contact(PAIR, refine(coarse, k), 750e6) for k in FACTORS}
+            contacts = {
+                k: Contact(PAIR, refine(coarse, k), plasticity=ConstantBound(750e6))
+                for k in FACTORS
+            }
             # All grids contain the coarse nodes, where the gaps differ only by the shift of first
             # touch.
             finest = contacts[FACTORS[-1]].gap[:: FACTORS[-1], :: FACTORS[-1]]

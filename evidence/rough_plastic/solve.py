@@ -8,6 +8,8 @@ Units inside: micrometre, MPa, hence micronewton; files are in SI units.
 
 import os
 
+from restitution.case.models import plasticity_of
+
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 import argparse
 import json
@@ -161,12 +163,7 @@ def main():
     solver = Contact(
         z,
         length,
-        a.depth,
-        a.layers,
-        modulus,
-        poisson,
-        a.yield_strength,
-        radius,
+        plasticity=plasticity_of(a.layers, a.depth),
         elastic=a.elastic,
         images=not a.no_images,
         tolerance=a.tolerance,

@@ -11,6 +11,7 @@ import numpy as np
 from evidence.shared import PAIR, write_image, write_table
 from restitution import Contact, Grid, collide, generate_surface, refine, solve
 from restitution.contact.checks.resolution import median_patch, resolves
+from restitution.contact.plasticity.bound import ConstantBound
 from restitution.plots.cor import cor_axis
 from restitution.plots.figure import PALETTE, SYMBOLS, Axis, Chart, Figure, Mark, Points
 
@@ -29,7 +30,7 @@ def rows():
                 GRID, kind="gaussian", rms=rms, correlation_length=2e-6, seed=seed
             )
             for k in FACTORS:
-                contact = Contact(PAIR, refine(coarse, k), 750e6)
+                contact = Contact(PAIR, refine(coarse, k), plasticity=ConstantBound(750e6))
                 for depth in DEPTHS:
                     state = solve(contact, depth)
                     patches = state.patch_sizes()

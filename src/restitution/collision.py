@@ -14,18 +14,12 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from restitution.arguments import typed
-from restitution.contact.cohesive import CohesiveState
-from restitution.contact.separation import RESTITUTION_ERROR, separate, separation_of
+from restitution.contact.models import RESTITUTION_ERROR
+from restitution.contact.path import unloading_path
 from restitution.contact.state import State
 from restitution.display import quantity, summary_html, summary_text
 
 UnloadingMethod = Literal["path", "energy-estimate"]
-# Error of the unloading work that each detachment criterion causes on a grid, as a fraction of the
-# work of adhesion w times the contact area. Smaller unloading steps do not reduce this error.
-# `crack-closure` detaches nodes at an energy release rate of 0.985 to 0.99 w. `pohrt-popov`
-# detaches nodes at 1.0 w where the contact edge has a kink, and at 1.8 w where it is straight.
-# These rates are too large by 0 and by 0.8 w; the error of this criterion is midway, 0.4.
-_RELEASE_ERROR = {"crack-closure": 0.015, "pohrt-popov": 0.4}
 
 
 @typed
@@ -153,28 +147,25 @@ def collide(
         mass=contact.pair.mass,
         separation_indentation=state.separation_indentation,
     )
-    if not contact.adhesive:
+    adhesion = contact.adhesion
+    if adhesion is None:
         return elastic
     if method == "energy-estimate":
-        surface_energy = contact.work_of_adhesion * state.contact_area
-        owed = -state.interaction_energy if isinstance(state, CohesiveState) else surface_energy
+        owed = adhesion.attraction_energy(state)
         return replace(
             elastic,
             unloading_work=state.stored_energy - owed,
-            unloading_work_error=surface_energy,
+            unloading_work_error=adhesion.work_of_adhesion * state.contact_area,
             adhesive_loss=owed,
             pull_off_force=math.nan,
             separation_indentation=math.nan,
         )
-    path = list(separate(state, tolerance=tolerance) if unloading is None else unloading)
-    separation = separation_of(path)
-    # Cohesive contacts have no detachment criterion.
-    release_share = 0.0 if contact.cohesive else _RELEASE_ERROR[contact.detachment]
-    release_error = release_share * contact.work_of_adhesion
+    path = list(unloading_path(state, tolerance=tolerance) if unloading is None else unloading)
+    separation = adhesion.separation_of(path)
     return replace(
         elastic,
         unloading_work=separation.unloading_work,
-        unloading_work_error=separation.error + release_error * state.contact_area,
+        unloading_work_error=separation.error + adhesion.release_error() * state.contact_area,
         adhesive_loss=separation.adhesive_loss,
         pull_off_force=separation.pull_off_force,
         separation_indentation=separation.separation_indentation,

@@ -46,7 +46,7 @@ def test_bodies_of_unknown_strength_are_elastic_only_when_asked_for(case_text, t
     with pytest.raises(CaseError, match=r'or write yield_pressure = "elastic"'):
         parse_case(case_text.replace('yield_pressure = "750 MPa"', ""))
     contact = parse_case(case_text.replace('"750 MPa"', '"elastic"')).contact(tmp_path)
-    assert contact.yield_pressure == math.inf
+    assert contact.hardness == math.inf
 
 
 STEEL = 'first = { material = "steel", radius = "500 um" }\n'

@@ -5,6 +5,7 @@ import pytest
 from scipy.linalg import cholesky, solve_triangular
 from scipy.optimize import lsq_linear
 
+from restitution.case.models import plasticity_of
 from restitution.contact.bodies import Body, Pair
 from restitution.contact.contact import Contact
 from restitution.numerics.grid import Grid
@@ -41,7 +42,11 @@ def rough_contact(pair):
             qx, qy = 2 * np.pi * rng.integers(-3, 4, 2) / np.array(grid.size)
             z += np.cos(qx * x + qy * y + rng.uniform(0, 2 * np.pi))
         z *= rms / max(z.std(), 1e-300)
-        return Contact(pair, Surface(z, grid), yield_pressure, plasticity)
+        return Contact(
+            pair,
+            Surface(z, grid),
+            plasticity=plasticity_of(plasticity, yield_pressure),
+        )
 
     return make
 
@@ -68,7 +73,7 @@ class Dense:
     @staticmethod
     def pressure(contact, indentation, limit=None, *, plastic=0.0):
         """Pressure on the whole grid: the minimum of ½|Lᵀp − L⁻¹b|² with 0 ≤ p ≤ p_y."""
-        limit = contact.yield_pressure if limit is None else limit
+        limit = contact.hardness if limit is None else limit
         K = Dense.influence(contact.grid, contact.pair.contact_modulus)
         b = (indentation - contact.gap - plastic).ravel()
         unit = indentation / K[0, 0]  # scales the unknowns to order one
@@ -86,7 +91,7 @@ class Dense:
     @staticmethod
     def violation(contact, pressure, indentation, limit=None, *, plastic=0.0):
         """Largest violation of the contact conditions anywhere on the grid, over δ."""
-        limit = contact.yield_pressure if limit is None else limit
+        limit = contact.hardness if limit is None else limit
         g = Dense.gap(contact, pressure, indentation) + plastic
         can_fall, can_rise = pressure > 0, pressure < limit
         return max((g * can_fall).max(), (-g * can_rise).max()) / indentation

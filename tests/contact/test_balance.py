@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 
 from restitution import Body, Contact, Grid, Pair, Surface, collide, solve
-from restitution.contact.adhesion import balance_of
+from restitution.contact.jkr.area import balance_of
+from restitution.contact.jkr.limit import JKRLimit
+from restitution.contact.jkr.separation import separate, separation_of
+from restitution.contact.jkr.unloading_curve import SharedUnloading, UnloadingCurve, unloading_curve
 from restitution.contact.loading import step
-from restitution.contact.separation import separate, separation_of
-from restitution.contact.unloading_curve import SharedUnloading, UnloadingCurve, unloading_curve
+from restitution.contact.plasticity.bound import ConstantBound
 from restitution.theory import JKR
 from tolerance import approx
 
@@ -30,7 +32,7 @@ def sphere(offset, deepest, nodes=8):
     x, y = grid.x[:, None], grid.y[None, :]
     shifted = (x - offset[0] * h) ** 2 + (y - offset[1] * h) ** 2
     surface = Surface((x * x + y * y - shifted) / (2 * PAIR.radius), grid, {"source": "shifted"})
-    return Contact(PAIR, surface, work_of_adhesion=W), float(shifted.min()) / (2 * PAIR.radius)
+    return Contact(PAIR, surface, adhesion=JKRLimit(W)), float(shifted.min()) / (2 * PAIR.radius)
 
 
 @pytest.mark.parametrize(
@@ -86,7 +88,7 @@ def test_unloading_does_not_join_beyond_the_end_of_a_known_curve():
 
 def test_unloading_of_yielded_bodies_joins_nothing():
     contact, _ = sphere((0.31, 0.17), 6 * BREAK)
-    yields = Contact(PAIR, contact.surface, 3e8, work_of_adhesion=W)
+    yields = Contact(PAIR, contact.surface, plasticity=ConstantBound(3e8), adhesion=JKRLimit(W))
     shallow = list(separate(solve(yields, 4 * BREAK), tolerance=0.02))
     deep = solve(yields, 6 * BREAK)
     assert deep.plastic_volume > 0
@@ -133,7 +135,7 @@ def test_every_area_has_one_point():
 
 def test_the_points_of_a_curve_are_the_balances_that_lie_below_those_before(monkeypatch):
     """Areas: two states of 900 nodes, then 800, 700 and 600; the balance of 700 is too high."""
-    from restitution.contact import unloading_curve as module
+    from restitution.contact.jkr import unloading_curve as module
 
     monkeypatch.setattr(module, "balances_are_reliable", lambda _: True)
     rows = (

@@ -11,17 +11,19 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from contact_keys import contact_of
 from restitution.collision import collide
-from restitution.contact import cohesive_path
 from restitution.contact.bodies import Body, Pair
-from restitution.contact.cohesive import cohesive_length, needed_spacing
-from restitution.contact.cohesive_path import follow, load_cohesive
+from restitution.contact.cohesive import path as cohesive_path
+from restitution.contact.cohesive.law import Cohesive
+from restitution.contact.cohesive.path import follow, load_cohesive, separation_of
 from restitution.contact.contact import Contact, smooth
 from restitution.contact.loading import solve, step
 from restitution.contact.path import unloading_path
-from restitution.contact.prescribed_force import solve_at_force
-from restitution.contact.prescribed_velocity import solve_at_velocity
-from restitution.contact.separation import separation_of
+from restitution.contact.plasticity.bound import ConstantBound
+from restitution.contact.plasticity.cavity import ExpandingCavity
+from restitution.contact.prescribed.force import solve_at_force
+from restitution.contact.prescribed.velocity import solve_at_velocity
 from restitution.errors import CaseError, DomainError
 from restitution.numerics.grid import Grid
 from restitution.numerics.quadrature import integrate_curve
@@ -55,7 +57,7 @@ def sphere(tabor, depth, *, cells=0.3, rough=0.0, seed=0, **options):
             height += np.cos(q[0] * x[:, None] + q[1] * x + rng.uniform(0, 6.3))
         surface = Surface(rough * Z0 * height / max(height.std(), 1e-30), surface.grid)
     options = {"adhesion": "cohesive", "work_of_adhesion": W, **options}
-    return Contact(pair, surface, equilibrium_separation=Z0, **options)
+    return contact_of(pair, surface, equilibrium_separation=Z0, **options)
 
 
 def reference(tabor):
@@ -220,8 +222,9 @@ def test_contact_is_where_the_law_is_stable():
 
 def test_a_coarse_grid_is_refused():
     contact = sphere(1.0, 2.0)
-    coarse = replace(contact, surface=smooth(Grid(40, 1.01 * 0.3 * cohesive_length(contact))))
-    needed = needed_spacing(contact)
+    zone = contact.adhesion.zone_length(contact.pair)
+    coarse = replace(contact, surface=smooth(Grid(40, 1.01 * 0.3 * zone)))
+    needed = contact.adhesion.coarsest_spacing(contact.pair)
     assert needed == approx(0.3 * LENGTH)
     with pytest.raises(CaseError, match=f"needs {1e9 * needed:.4g} nm or less"):
         solve(coarse, Z0)
@@ -236,18 +239,14 @@ def test_a_small_grid_is_refused():
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"detachment": "pohrt-popov"}, "detachment"),
-        ({"approach": "hertzian"}, "approach"),
-        ({"approach": "pull-increments"}, "approach"),
         ({"plasticity": "truncated", "yield_pressure": 1e9}, "truncated"),
         ({"equilibrium_separation": -1e-10}, "equilibrium_separation"),
-        ({"adhesion": "dmt"}, "adhesion"),
     ],
 )
 def test_bad_input(options, words):
     valid = {"work_of_adhesion": W, "adhesion": "cohesive"}
     with pytest.raises(CaseError, match=words) as refusal:
-        Contact(pair_of(1.0), smooth(Grid(8, 1e-8)), **{**valid, **options})
+        contact_of(pair_of(1.0), smooth(Grid(8, 1e-8)), **{**valid, **options})
     assert "\n" not in str(refusal.value)
 
 
@@ -276,7 +275,7 @@ def test_each_step_adds_its_error(monkeypatch):
 
 
 def test_increments_of_plastic_work_add_their_error(monkeypatch):
-    monkeypatch.setattr(cohesive_path, "plastic_work", lambda *_: (0.0, 1e-20))
+    monkeypatch.setattr(ExpandingCavity, "work", lambda *_: (0.0, 1e-20))
     tried, make = [], cohesive_path._try
 
     def watched(previous, state, at, residual):
@@ -302,7 +301,9 @@ def test_the_error_of_unloading_is_that_of_the_steps_and_of_the_grid():
     depth, force = ([getattr(state, key) for state in path] for key in ("indentation", "force"))
     by_force = end.potential_energy - integrate_curve(depth, force)
     steps = max(end.work_error - path[0].work_error, abs(by_force - found.unloading_work))
-    spacing = path[0].contact.grid.spacing[0] / needed_spacing(path[0].contact)
+    spacing = path[0].contact.grid.spacing[0] / path[0].contact.adhesion.coarsest_spacing(
+        path[0].contact.pair
+    )
     assert steps > 0
     assert lost > 0
     assert found.error == approx(steps + 0.05 * spacing**2 * lost, rel=1e-6)
@@ -326,7 +327,9 @@ def test_an_elastic_contact_joins_the_unloading_from_a_shallower_depth(limit):
     surface = generate_surface(
         Grid(96, 4e-9), kind="gaussian", rms=1e-9, correlation_length=60e-9, seed=1
     )
-    contact = Contact(Pair(body, body), surface, limit, work_of_adhesion=0.05, adhesion="cohesive")
+    contact = Contact(
+        Pair(body, body), surface, plasticity=ConstantBound(limit), adhesion=Cohesive(0.05)
+    )
     depths = [0.5e-9, 1.5e-9, 3e-9]
     joined, alone = (unloaded(contact, depths, share=share) for share in (True, False))
     assert joined[0] == approx(alone[0], rel=2e-3)

@@ -6,20 +6,16 @@ import numpy as np
 import pytest
 
 from restitution.contact.bodies import Body, Pair
-from restitution.contact.cohesive_law import BoundedLaw, largest_softening, law_of, stiffness
+from restitution.contact.cohesive.equilibrium import BoundedLaw
+from restitution.contact.cohesive.law import Cohesive
 from restitution.contact.contact import Contact, smooth
 from restitution.numerics.grid import Grid
 from tolerance import approx
 
 W, Z0 = 0.05, 0.3e-9
 BODY = Body(1e-6, 2e11, 0.3)
-CONTACT = Contact(
-    Pair(BODY, BODY),
-    smooth(Grid(8, 1e-9)),
-    adhesion="cohesive",
-    work_of_adhesion=W,
-    equilibrium_separation=Z0,
-)
+LAW = Cohesive(W, Z0)
+CONTACT = Contact(Pair(BODY, BODY), smooth(Grid(8, 1e-9)), adhesion=LAW)
 
 
 @pytest.fixture(params=[math.inf, 2e9], ids=["elastic", "yields"])
@@ -32,7 +28,7 @@ def bounded(request):
 def test_the_pressure_at_the_limit_is_the_bound_or_the_modulus(bounded):
     law, _ = bounded
     largest = 2e9 if law.yields else CONTACT.pair.contact_modulus
-    assert float(law_of(CONTACT).traction(law.least)) == approx(-largest)
+    assert float(LAW.traction(law.least)) == approx(-largest)
 
 
 def test_slope_and_curvature_are_derivatives_of_the_energy(bounded):
@@ -48,19 +44,19 @@ def test_what_goes_beyond_the_limit_is_plastic_or_the_energy_of_the_continuation
     law, u = bounded
     gap = law.base + u
     assert law.beyond(u) == approx(np.array([0.1, 0.01, 0, 0]) * law.least, rel=1e-9)
-    rest = law(u)[0] - law_of(CONTACT).energy(np.maximum(gap, law.least))
+    rest = law(u)[0] - LAW.energy(np.maximum(gap, law.least))
     assert rest[:2] == approx(law.continuation(u)[:2], rel=1e-9)
     assert law.continuation(u)[2:].tolist() == [0, 0]
 
 
 def test_the_stiffness_is_the_slope_of_the_traction():
     gap, step = Z0 * np.array([0.9, 1.0, 1.3, 2.0]), 1e-5 * Z0
-    low, high = (law_of(CONTACT).traction(gap + sign * step) for sign in (-1, 1))
-    assert stiffness(CONTACT, Z0 / gap) == approx((high - low) / (2 * step), rel=1e-6)
+    low, high = (LAW.traction(gap + sign * step) for sign in (-1, 1))
+    assert LAW.stiffness(gap) == approx((high - low) / (2 * step), rel=1e-6)
 
 
 def test_the_largest_softening_is_that_of_all_wider_gaps():
     for smallest in Z0 * np.array([0.8, 1.3, 1.6, 3.0]):
         gaps = smallest * np.linspace(1, 5, 20001)
-        softest = -stiffness(CONTACT, Z0 / gaps).min()
-        assert largest_softening(CONTACT, smallest) == approx(softest)
+        softest = -LAW.stiffness(gaps).min()
+        assert LAW.largest_softening(smallest) == approx(softest)

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 from restitution.contact.contact import Contact, smooth
+from restitution.contact.plasticity.bound import ConstantBound
 from restitution.errors import CaseError
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface
@@ -76,15 +77,31 @@ def test_smooth_says_so(pair):
     surface = smooth(Grid((3, 4), (1e-6, 1e-6)))
     assert surface.provenance["kind"] == "smooth"
     assert_array_equal(surface.height, np.zeros((3, 4)))
-    assert Contact(pair, surface).yield_pressure == math.inf
+    assert Contact(pair, surface).hardness == math.inf
 
 
 @pytest.mark.parametrize("p_y", [0.0, -1.0, math.nan, -math.inf])
 def test_a_yield_pressure_that_is_not_positive_is_refused(pair, p_y):
     with pytest.raises(CaseError, match=r"^yield_pressure: .*not positive"):
-        Contact(pair, smooth(Grid((3, 3), (1e-6, 1e-6))), p_y)
+        Contact(
+            pair,
+            smooth(Grid((3, 3), (1e-6, 1e-6))),
+            plasticity=ConstantBound(p_y),
+        )
 
 
-def test_an_unknown_model_is_refused_with_the_known_ones(pair):
-    with pytest.raises(CaseError, match='"perfect" is not one of expanding-cavity, equi'):
-        Contact(pair, smooth(Grid((3, 3), (1e-6, 1e-6))), 1e9, "perfect")
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"plasticity": "perfect"}, 'plasticity: "perfect" is not a Plasticity'),
+        ({"adhesion": "jkr"}, 'adhesion: "jkr" is not a Adhesion or None'),
+        ({"yield_pressure": 1e9}, r"plasticity=ConstantBound\(yield_pressure\)"),
+        ({"yield_strength": 1e9}, r"plasticity=ExpandingCavity\(yield_strength\)"),
+        ({"work_of_adhesion": 0.05}, r"adhesion=JKRLimit\(work_of_adhesion\)"),
+        ({"detachment": "pohrt-popov"}, r"adhesion=JKRLimit\(.*detachment=…\)"),
+    ],
+)
+def test_what_is_not_a_model_names_the_form_to_write(pair, options, words):
+    with pytest.raises(CaseError, match=words) as refusal:
+        Contact(pair, smooth(Grid((3, 3), (1e-6, 1e-6))), **options)
+    assert "\n" not in str(refusal.value)

@@ -8,16 +8,18 @@ from scipy.integrate import dblquad
 from scipy.ndimage import label
 
 from restitution import Body, Contact, Grid, Pair, Surface, solve
-from restitution.contact import adhesion, detachment
-from restitution.contact.adhesion import release_nodes
-from restitution.contact.detachment import (
+from restitution.case.models import adhesion_of
+from restitution.contact.influence import half_space
+from restitution.contact.jkr import detachment
+from restitution.contact.jkr.area import release_nodes
+from restitution.contact.jkr.detachment import (
     Edge,
     released_beyond,
     released_by_closure,
     tension_limit,
 )
-from restitution.contact.influence import half_space
-from restitution.contact.separation import separate, separation_of
+from restitution.contact.jkr.limit import JKRLimit
+from restitution.contact.jkr.separation import separate, separation_of
 from restitution.numerics.expressions import diffuse
 from restitution.theory import Kendall
 from tolerance import approx
@@ -64,13 +66,17 @@ def punch(nodes, depth=1e-3, w=0.1, detachment="crack-closure"):
     r = np.hypot(grid.x[:, None], grid.y[None, :])
     disc = r < 10e-6
     surface = Surface(np.where(disc, 0.0, -depth), grid, {"source": "punch"})
-    contact = Contact(FLAT, surface, work_of_adhesion=w, approach="hertzian", detachment=detachment)
+    contact = Contact(
+        FLAT,
+        surface,
+        adhesion=adhesion_of(work_of_adhesion=w, approach="hertzian", detachment=detachment),
+    )
     return contact, disc, math.sqrt(disc.sum() * grid.cell_area / math.pi)
 
 
 def drawn(contact, disc, distance):
     """Pressure, displacement and gap of the punch retracted by `distance` with all nodes held."""
-    patient = Contact(contact.pair, contact.surface, work_of_adhesion=1e6)  # no node is released
+    patient = Contact(contact.pair, contact.surface, adhesion=JKRLimit(1e6))  # no node is released
     n, m = contact.grid.nodes
     whole = slice(0, n), slice(0, m)
     state, _ = release_nodes(patient, -distance, whole, disc, limit=math.inf, residual=1e-9)
@@ -206,7 +212,7 @@ def test_criteria_by_name(name, rule, monkeypatch):
             calls.append((function.__name__, given))
             return function(*given)
 
-        monkeypatch.setattr(adhesion, function.__name__, recorded)
+        monkeypatch.setattr(detachment, function.__name__, recorded)
     whole = slice(0, disc.shape[0]), slice(0, disc.shape[1])
     release_nodes(contact, -1e-9, whole, disc, limit=math.inf, residual=1e-9)
     assert {called for called, _ in calls} == {rule}

@@ -16,6 +16,7 @@ import pytest
 import scipy.fft
 from numpy.testing import assert_allclose
 
+from contact_keys import contact_of
 from restitution import (
     Body,
     Contact,
@@ -27,6 +28,8 @@ from restitution import (
     unloading_path,
 )
 from restitution.contact.influence import half_space, inverse_half_space, periodic_half_space
+from restitution.contact.jkr.limit import JKRLimit
+from restitution.contact.plasticity.bound import ConstantBound
 from restitution.errors import CaseError
 from restitution.numerics.convolution import device as device_module
 from restitution.numerics.convolution.device import _LibraryDevice, current, on_device
@@ -161,7 +164,7 @@ def test_a_solve_is_the_same_on_any_device(rough_contact, limit):
 )
 def test_each_model_of_plasticity_is_the_same_on_any_device(rough_contact, yielding):
     plain = rough_contact()
-    contact = Contact(plain.pair, plain.surface, **yielding)
+    contact = contact_of(plain.pair, plain.surface, **yielding)
     here = solve(contact, DEPTH)
     with on_device(STAND_IN):
         there = solve(contact, DEPTH)
@@ -179,7 +182,12 @@ def test_a_periodic_contact_is_the_same_on_any_device(limit):
         surface = generate_surface(
             grid, kind="gaussian", rms=50e-9, correlation_length=2e-6, seed=1
         )
-        contact = Contact(Pair(wall, wall), surface, limit, periodic=True)
+        contact = Contact(
+            Pair(wall, wall),
+            surface,
+            plasticity=ConstantBound(limit),
+            periodic=True,
+        )
         here = solve_at_pressure(contact, 1e9)
         with on_device(STAND_IN):
             there = solve_at_pressure(contact, 1e9)
@@ -191,7 +199,9 @@ def test_a_periodic_contact_is_the_same_on_any_device(limit):
 
 def test_unloading_and_adhesion_run_on_any_device(pair, rough_contact):
     plain = rough_contact(yield_pressure=2e9)
-    sticky = Contact(plain.pair, plain.surface, 2e9, work_of_adhesion=0.05)
+    sticky = Contact(
+        plain.pair, plain.surface, plasticity=ConstantBound(2e9), adhesion=JKRLimit(0.05)
+    )
     for contact in (plain, sticky):
         here = [(s.indentation, s.force) for s in unloading_path(solve(contact, DEPTH))]
         with on_device(STAND_IN):

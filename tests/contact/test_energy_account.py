@@ -12,8 +12,9 @@ import numpy as np
 from hypothesis import HealthCheck, Phase, given, reject, settings
 from hypothesis import strategies as st
 
-from restitution import Body, Contact, Grid, Pair, collide, generate_surface, smooth, solve
-from restitution.contact.separation import separate, unloading_curve
+from contact_keys import contact_of
+from restitution import Body, Grid, Pair, collide, generate_surface, smooth, solve
+from restitution.contact.jkr.separation import separate, unloading_curve
 from restitution.errors import DomainError
 from tolerance import approx
 
@@ -54,7 +55,7 @@ def load(nodes, spacing, rms, seed, depth, **options):
         )
     held = (0.5 * min(grid.size) - 3 * spacing) ** 2 / (2.4 * PAIR.radius)
     try:
-        return solve(Contact(PAIR, surface, **options), depth * held)
+        return solve(contact_of(PAIR, surface, **options), depth * held)
     except DomainError:
         reject()  # asperities, or adhesion on approach, make the contact larger
 

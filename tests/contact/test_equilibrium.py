@@ -9,9 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
+from contact_keys import contact_of, load, models_of
 from restitution.contact.bodies import Body, Pair
 from restitution.contact.contact import Contact, smooth
-from restitution.contact.loading import solve, solve_without_work, step
+from restitution.contact.loading import solve, step
+from restitution.contact.plasticity.bound import ConstantBound
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface
 from tolerance import approx
@@ -74,11 +76,11 @@ def test_the_conditions_of_contact_hold_on_the_whole_grid(
     )
     depth = 0.03 * h * min(1, aspect) ** 2
     scale = contact.pair.contact_modulus * math.sqrt(depth / contact.pair.radius)
-    contact = replace(contact, yield_pressure=yield_factor * 0.3 * scale)
-    state = solve_without_work(contact, depth, start=None, residual=1e-9)
+    contact = replace(contact, **models_of(yield_pressure=yield_factor * 0.3 * scale))
+    state = load(contact, depth, start=None, residual=1e-9)
     assert state.residual <= 1e-9
     assert (state.pressure >= 0).all()
-    assert (state.pressure <= contact.yield_pressure).all()
+    assert (state.pressure <= contact.hardness).all()
     assert dense.violation(contact, state.pressure, depth) <= 1.1e-9
     outside = np.ones(contact.grid.nodes, dtype=bool)
     outside[state.box] = False
@@ -109,7 +111,7 @@ def one_asperity(pair, **options):
     grid = Grid((9, 8), (0.5 * UM, 0.2 * UM))
     z = np.zeros(grid.nodes)
     z[3, 5] = 200 * NM
-    return Contact(pair, Surface(z, grid), **options)
+    return contact_of(pair, Surface(z, grid), **options)
 
 
 SELF = 2 / (math.pi * E_STAR) * UM * (0.5 * math.asinh(0.4) + 0.2 * math.asinh(2.5))
@@ -181,7 +183,15 @@ def test_turning_the_surface_turns_the_solution(rough_contact, p_y):
 
 def test_a_larger_grid_of_the_same_spacing_changes_nothing(pair):
     small, large = (
-        solve(Contact(pair, smooth(Grid(nodes, (0.5 * UM, 0.4 * UM))), P_Y), DEPTH, residual=1e-11)
+        solve(
+            Contact(
+                pair,
+                smooth(Grid(nodes, (0.5 * UM, 0.4 * UM))),
+                plasticity=ConstantBound(P_Y),
+            ),
+            DEPTH,
+            residual=1e-11,
+        )
         for nodes in ((20, 27), (35, 44))
     )
     assert large.force == approx(small.force, rel=1e-9)
@@ -198,9 +208,7 @@ def test_a_larger_grid_of_the_same_spacing_changes_nothing(pair):
 )
 def test_the_force_grows_with_depth_and_so_does_all_else(rough_contact, seed, nm, factor, p_y):
     contact = rough_contact(seed=seed, yield_pressure=p_y)
-    a, b = (
-        solve_without_work(contact, d * NM, start=None, residual=1e-10) for d in (nm, factor * nm)
-    )
+    a, b = (load(contact, d * NM, start=None, residual=1e-10) for d in (nm, factor * nm))
     assert b.force >= a.force * (1 - 1e-8)  # equal for a single node at p_y
     assert b.stored_energy >= a.stored_energy * (1 - 1e-8)
     assert b.plastic_work >= a.plastic_work * (1 - 1e-8)
@@ -262,7 +270,7 @@ def test_plateaus_and_ties_are_nothing_special(pair, dense):
         np.where(inside, 20 * NM * np.round(bare / (20 * NM)), bare - 1 * UM),  # terraces
     ):
         for p_y in (math.inf, 2e8):
-            contact = Contact(pair, Surface(z, grid), p_y)
+            contact = Contact(pair, Surface(z, grid), plasticity=ConstantBound(p_y))
             state = solve(contact, 5 * NM, residual=1e-10)
             p = dense.pressure(contact, 5 * NM)
             assert_allclose(state.pressure, p, atol=1e-6 * p.max())
@@ -356,7 +364,11 @@ def test_unloading_of_a_soft_flat_is_resolved(pair):
     grid = Grid((36, 27), (1 * UM, 4 * UM))
     bare = Contact(pair, smooth(grid)).gap
     inside = np.hypot(grid.x[:, None], grid.y[None, :]) < 12 * UM
-    contact = Contact(pair, Surface(np.where(inside, bare, bare - 9 * UM), grid), 1e-7 * E_STAR)
+    contact = Contact(
+        pair,
+        Surface(np.where(inside, bare, bare - 9 * UM), grid),
+        plasticity=ConstantBound(1e-7 * E_STAR),
+    )
     deepest = solve(contact, 1 * UM)
     spring = 1 * UM - deepest.separation_indentation
     assert spring < 1e-5 * UM

@@ -1,24 +1,27 @@
 """Findings are immutable data."""
 
 import pickle
+from dataclasses import FrozenInstanceError
 
 import pytest
 
-from restitution.contact.checks.finding import Finding
+from restitution.contact.checks.findings import FewNodes, FinerThanScan
+
+FOUND = FewNodes(1e-7, 1e-6)
 
 
 def test_a_finding_is_frozen():
-    values = {"radius": 1e-6}
-    found = Finding("few-nodes", values)
-    values["radius"] = 2e-6
-    assert found["radius"] == 1e-6
-    with pytest.raises(TypeError):
-        found.values["radius"] = 2e-6
+    with pytest.raises(FrozenInstanceError):
+        FOUND.radius = 2e-6
 
 
-def test_findings_compare_by_code_and_values():
-    found = Finding("few-nodes", {"radius": 1e-6})
-    assert found == Finding("few-nodes", {"radius": 1e-6}) == pickle.loads(pickle.dumps(found))
-    assert hash(found) == hash(Finding("few-nodes", {"radius": 1e-6}))
-    assert found != Finding("few-nodes", {"radius": 2e-6})
-    assert found != Finding("no-half-space", {"radius": 1e-6})
+def test_findings_compare_by_kind_and_values():
+    assert FOUND == FewNodes(1e-7, 1e-6) == pickle.loads(pickle.dumps(FOUND))
+    assert hash(FOUND) == hash(FewNodes(1e-7, 1e-6))
+    assert FewNodes(1e-7, 2e-6) != FOUND
+    assert FinerThanScan(1e-7, 1e-6) != FOUND
+
+
+def test_a_finding_has_a_name_and_says_what_to_do():
+    assert FOUND.code == "few-nodes"
+    assert "use a finer grid or scan" in FOUND.text()

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
+from contact_keys import contact_of
 from restitution import Contact, Grid, Surface, smooth, solve, step, unloading_path
+from restitution.contact.plasticity.bound import ConstantBound
 
 GRID = Grid((24, 24), (0.5e-6, 0.5e-6))
 DEPTH = 40e-9
@@ -54,7 +56,7 @@ def test_what_a_contact_keeps_is_read_only(rough_contact):
 
 @pytest.mark.parametrize("model", MODELS)
 def test_the_arrays_of_a_state_are_read_only(pair, model):
-    deepest = solve(Contact(pair, smooth(GRID), **MODELS[model]), DEPTH)
+    deepest = solve(contact_of(pair, smooth(GRID), **MODELS[model]), DEPTH)
     states = [deepest, *unloading_path(deepest, steps=2)]
     if model != "truncated":
         states.append(step(deepest, 1.1 * DEPTH))
@@ -66,7 +68,7 @@ def test_the_arrays_of_a_state_are_read_only(pair, model):
 
 @pytest.mark.parametrize("model", MODELS)
 def test_a_solve_does_not_change_the_state_it_starts_from(pair, model):
-    contact = Contact(pair, smooth(GRID), **MODELS[model])
+    contact = contact_of(pair, smooth(GRID), **MODELS[model])
     start = solve(contact, 0.5 * DEPTH)
     before = [values.copy() for values in arrays_of(start)]
     solve(contact, DEPTH, start=start)
@@ -95,8 +97,11 @@ def test_surfaces_and_states_are_equal_by_identity(pair):
 
 def test_contacts_are_equal_by_value_on_one_surface(pair):
     surface = smooth(GRID)
-    contact, same = Contact(pair, surface, 750e6), Contact(pair, surface, 750e6)
+    contact, same = (
+        Contact(pair, surface, plasticity=ConstantBound(750e6)),
+        Contact(pair, surface, plasticity=ConstantBound(750e6)),
+    )
     assert contact == same
     assert hash(contact) == hash(same)
-    assert contact != Contact(pair, surface, 751e6)
-    assert contact != Contact(pair, smooth(GRID), 750e6)
+    assert contact != Contact(pair, surface, plasticity=ConstantBound(751e6))
+    assert contact != Contact(pair, smooth(GRID), plasticity=ConstantBound(750e6))

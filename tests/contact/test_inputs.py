@@ -1,12 +1,14 @@
 """What checks find before anything is solved: each on both sides of its limit, and its values."""
 
 import math
+from dataclasses import asdict
 
 import numpy as np
 import pytest
 
+from contact_keys import contact_of
 from restitution.contact.bodies import Body, Pair
-from restitution.contact.checks.edge import edge_values
+from restitution.contact.checks.edge import edge_predicted
 from restitution.contact.checks.inputs import doubtful, impossible
 from restitution.contact.checks.resolution import predicted_radius
 from restitution.contact.contact import Contact, smooth
@@ -23,7 +25,7 @@ BEYOND = 1 + 1e-6
 
 
 def on(pair, height, provenance=(), **values):
-    return Contact(pair, Surface(height, GRID, dict(provenance)), **values)
+    return contact_of(pair, Surface(height, GRID, dict(provenance)), **values)
 
 
 def codes(contact, indentation=DEEP):
@@ -46,8 +48,8 @@ def test_roughness_is_higher_than_the_smaller_particle(swapped):
     height[:, :40] = 1.0  # one above half of the nodes: the peak is 0.5 above the mean
     found = impossible(on(small, 4 * UM * BEYOND * height), 1e-9)
     assert found.code == "roughness-above-radius"
-    assert found["radius"] == 2 * UM
-    assert found["peak"] == approx(2 * UM, rel=1e-5)
+    assert found.radius == 2 * UM
+    assert found.peak == approx(2 * UM, rel=1e-5)
     assert impossible(on(small, 4 * UM / BEYOND * height), 1e-9) is None
 
 
@@ -56,8 +58,8 @@ def test_a_contact_is_larger_than_the_particle(pair):
     assert impossible(contact, pair.radius / BEYOND) is None
     found = impossible(contact, 4 * pair.radius)
     assert found.code == "contact-beyond-radius"
-    assert found["radius"] == approx(2 * pair.radius)
-    assert (found["indentation"], found["reduced_radius"]) == (4 * pair.radius, pair.radius)
+    assert found.radius == approx(2 * pair.radius)
+    assert (found.indentation, found.reduced_radius) == (4 * pair.radius, pair.radius)
 
 
 def test_a_pixel_is_larger_than_the_contact(pair):
@@ -86,8 +88,8 @@ def tilted(explained):
 def test_half_of_the_variance_may_be_a_plane(pair, key, how):
     scan = {"file": "scan.npy", key: how}
     found = found_by(on(pair, tilted(0.51), scan), "tilted-scan")
-    assert found["file"] == "scan.npy"
-    assert found["explained"] == approx(0.51, rel=1e-2)
+    assert found.file == "scan.npy"
+    assert found.explained == approx(0.51, rel=1e-2)
     assert codes(on(pair, tilted(0.49), scan)) == []
 
 
@@ -116,8 +118,7 @@ def test_the_first_touch_is_near_an_edge(pair, axis, side):
         return on(pair, height)
 
     found = found_by(spike(0.45), "edge-predicted")
-    expected = edge_values(spike(0.45), DEEP)
-    assert {name: found[name] for name in expected} == expected
+    assert found == edge_predicted(spike(0.45), DEEP, found.gap)
     assert "edge-predicted" not in codes(spike(0.35))
 
 
@@ -130,7 +131,7 @@ def test_any_edge_of_the_grid_may_close(pair, corner):
     height[corner] = rim
     height[centre] = 1e-9
     found = found_by(on(pair, height), "edge-predicted")
-    assert found["gap"] == approx(1e-9, rel=1e-6)
+    assert found.gap == approx(1e-9, rel=1e-6)
 
 
 def predicted_from(contact):
@@ -202,8 +203,8 @@ def test_half_is_a_steep_slope(pair, slope, steep):
     found = [each for each in doubtful(contact, DEEP) if each.code == "steep-surface"]
     assert bool(found) is steep
     if found:
-        assert found[0]["slope"] == approx(slope, rel=1e-9)
-        assert found[0]["limit"] == 0.5
+        assert found[0].slope == approx(slope, rel=1e-9)
+        assert found[0].limit == 0.5
 
 
 @pytest.mark.parametrize(
@@ -214,7 +215,7 @@ def test_yield_pressures_of_materials(pair, ratio, unusual):
     found = [each for each in doubtful(contact, DEEP) if each.code == "unusual-yield-pressure"]
     assert bool(found) is unusual
     if found:
-        assert dict(found[0].values) == {"ratio": approx(ratio), "low": 1e-5, "high": 0.3}
+        assert asdict(found[0]) == {"ratio": approx(ratio), "low": 1e-5, "high": 0.3}
 
 
 @pytest.mark.parametrize(("stretch", "oblong"), [(0.989, True), (0.991, False), (1.011, True)])
@@ -227,7 +228,7 @@ def test_pixels_are_square_to_a_hundredth(pair, stretch, oblong, part):
     assert bool(found) is oblong
     if found:
         values = {"file": "scan.npy", "x": approx(stretch * 0.4 * UM), "y": 0.4 * UM}
-        assert dict(found[0].values) == values
+        assert asdict(found[0]) == values
     assert "oblong-pixels" not in codes(on(pair, np.zeros(GRID.nodes), pixels))
 
 
@@ -235,7 +236,7 @@ def test_every_part_of_a_composite_is_looked_at_and_nothing_else(pair):
     square = {"part_1_pixel_x_m": UM, "part_1_pixel_y_m": UM, "part_1_file": "a.npy"}
     oblong = {"part_2_pixel_x_m": UM, "part_2_pixel_y_m": 2 * UM, "part_2_file": "b.npy"}
     found = found_by(on(pair, np.zeros(GRID.nodes), {**square, **oblong}), "oblong-pixels")
-    assert found["file"] == "b.npy"
+    assert found.file == "b.npy"
     other = {"coarsest_pixel_x_m": UM, "coarsest_pixel_y_m": 2 * UM, "coarsest_file": "c.npy"}
     assert codes(on(pair, np.zeros(GRID.nodes), other)) == []
 
@@ -247,10 +248,10 @@ def test_a_grid_is_coarser_than_its_scan(pair, axis, spacing):
         return on(pair, np.zeros(GRID.nodes), {**pixels, f"pixel_{axis}_m": pixel})
 
     found = found_by(with_pixel(spacing / 1.002), "coarser-than-scan")
-    assert dict(found.values) == {"spacing": spacing, "pixel": spacing / 1.002, "axis": axis}
+    assert asdict(found) == {"spacing": spacing, "pixel": spacing / 1.002, "axis": axis}
     assert "coarser-than-scan" not in codes(with_pixel(spacing / 1.0005))
 
 
 def test_a_notice_is_repeated(pair):
     found = found_by(on(pair, np.zeros(GRID.nodes), {"notice": "half of it"}), "surface-notice")
-    assert found["notice"] == "half of it"
+    assert found.notice == "half of it"

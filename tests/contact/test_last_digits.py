@@ -15,7 +15,8 @@ from pathlib import Path
 import pytest
 
 from restitution import Body, Contact, Grid, Pair, collide, generate_surface, smooth, solve, step
-from restitution.contact.separation import separate
+from restitution.case.models import adhesion_of, plasticity_of
+from restitution.contact.jkr.separation import separate
 from restitution.numerics.kernels import instruction_set
 from tolerance import approx
 
@@ -76,11 +77,8 @@ def compute_adhesive(approach, surface, yield_pressure, plasticity, depth):
     contact = Contact(
         Pair(STEEL, STEEL),
         surface_of(surface, GRIDS["coarse"]),
-        yield_pressure,
-        plasticity,
-        work_of_adhesion=0.05,
-        approach=approach,
-        detachment="pohrt-popov",
+        plasticity=plasticity_of(plasticity, yield_pressure),
+        adhesion=adhesion_of(work_of_adhesion=0.05, approach=approach, detachment="pohrt-popov"),
     )
     state = solve(contact, depth)
     path = list(separate(state))
@@ -98,7 +96,11 @@ def compute_adhesive(approach, surface, yield_pressure, plasticity, depth):
 
 def compute_nonadhesive(grid, surface, yield_pressure, plasticity):
     """The numbers of one cycle, and of one step of unloading."""
-    contact = Contact(Pair(STEEL, STEEL), surface_of(surface, grid), yield_pressure, plasticity)
+    contact = Contact(
+        Pair(STEEL, STEEL),
+        surface_of(surface, grid),
+        plasticity=plasticity_of(plasticity, yield_pressure),
+    )
     state = solve(contact, DEPTH)
     collision = collide(state)
     return loaded(state) | {

@@ -7,17 +7,15 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from contact_keys import contact_of
 from restitution import Body, Contact, Grid, Pair, generate_surface, smooth, solve
+from restitution.case.models import plasticity_of
 from restitution.collision import collide
-from restitution.contact.model_error import (
-    _CONSTANT,
-    _GROWING,
-    _NEAR_ONE,
-    _STEEPNESS,
-    hysteresis_ratio,
-    largest_difference,
-    model_error,
-)
+from restitution.contact.checks.model_error import model_error
+from restitution.contact.jkr.limit import JKRLimit, hysteresis_ratio
+from restitution.contact.plasticity import bound as constant
+from restitution.contact.plasticity import cavity, truncated
+from restitution.contact.plasticity.cavity import ExpandingCavity
 from tolerance import approx
 
 TABLE = Path(__file__).parents[2] / "evidence" / "plasticity_models" / "models.csv"
@@ -27,7 +25,7 @@ GRID = Grid((64, 64), (2e-6, 2e-6))
 
 
 def contact(**yields):
-    return Contact(PAIR, smooth(GRID), **yields)
+    return contact_of(PAIR, smooth(GRID), **yields)
 
 
 def test_it_is_zero_where_nothing_yields():
@@ -82,7 +80,7 @@ def test_it_covers_the_range_that_jkr_neglects(tabor):
     depth = 6 * tabor * z0
     h = 0.35 * (radius**2 * w / E_star) ** (1 / 3)  # a_c/h = 4.3
     n = 2 * int(np.sqrt(3 * radius * depth) / h + 4)
-    jkr = Contact(Pair(body, body), smooth(Grid(n, h)), work_of_adhesion=w)
+    jkr = Contact(Pair(body, body), smooth(Grid(n, h)), adhesion=JKRLimit(w))
     state = solve(jkr, depth)
     collision = collide(state)
     error = model_error(state, collision.restitution)
@@ -113,16 +111,16 @@ def references():
         strength = float(row["yield_strength_over_contact_modulus"])
         slope = float(row["rms_slope"]) * 1e9 / PAIR.contact_modulus / strength
         e = float(row["restitution"])
-        bound = largest_difference(deformed(grows, row["model"], slope), e)
+        bound = difference(row["model"], slope, e)
         yield row["model"], e, float(row["restitution_reference"]), bound
 
 
-def deformed(grows, model, slope):
-    """What the bound looks at in a state, of bodies with a yield strength of 1 GPa."""
-    yields = {"yield_strength": 1e9} if grows else {"yield_pressure": 2.8e9}
-    return SimpleNamespace(
-        contact=SimpleNamespace(grows=grows, plasticity=model, slope=slope, pair=PAIR, **yields)
-    )
+def difference(model, slope, e):
+    """The largest difference for bodies with a yield strength of 1 GPa."""
+    yields = {"yield_strength": 1e9, "yield_pressure": 2.8e9}
+    del yields["yield_pressure" if model == "expanding-cavity" else "yield_strength"]
+    contact = SimpleNamespace(slope=slope, pair=PAIR)
+    return plasticity_of(model, **yields).difference(contact, e)
 
 
 @needs_references
@@ -144,7 +142,8 @@ def test_it_is_no_wider_than_the_references_need(model):
 
 def test_its_tables_increase():
     """Otherwise the interpolation between their entries means nothing."""
-    tables = [*_CONSTANT.values(), (_STEEPNESS, _GROWING), _NEAR_ONE]
+    tables = [(model._RESTITUTION, model._DIFFERENCE) for model in (constant, truncated)]
+    tables += [(cavity._STEEPNESS, cavity._GROWING), cavity._NEAR_ONE]
     for known, errors in tables:
         assert len(known) == len(errors)
         assert list(known) == sorted(set(known))
@@ -154,12 +153,12 @@ def test_its_tables_increase():
 @pytest.mark.parametrize(("psi", "largest"), [(0, 0.03), (4, 0.035), (5, 0.04), (6, 0.045)])
 def test_the_growing_bound_is_better_near_one(psi, largest):
     """Its error falls to a half at COR = 0.98 and a fifth at 1, whatever the slope."""
-    state = deformed(True, "expanding-cavity", psi * 1e9 / PAIR.contact_modulus)
+    slope = psi * 1e9 / PAIR.contact_modulus
     shares = {0.3: 1, 0.94: 1, 0.96: 0.75, 0.98: 0.5, 0.99: 0.35, 1.0: 0.2}
     for e, share in shares.items():
-        assert largest_difference(state, e) == approx(share * largest, rel=1e-6)
-    steeper = deformed(True, "expanding-cavity", 40e9 / PAIR.contact_modulus)
-    assert largest_difference(steeper, 0.5) == 0.045
+        found = difference("expanding-cavity", slope, e)
+        assert found == approx(share * largest, rel=1e-6)
+    assert difference("expanding-cavity", 40e9 / PAIR.contact_modulus, 0.5) == 0.045
 
 
 def test_steeper_asperities_have_a_larger_error():
@@ -167,18 +166,23 @@ def test_steeper_asperities_have_a_larger_error():
     errors = []
     for rms in (1e-9, 5e-8, 2e-7):
         shape = {"kind": "gaussian", "rms": rms, "correlation_length": 4e-6, "seed": 1}
-        state = solve(Contact(PAIR, generate_surface(grid, **shape), yield_strength=1e9), 1e-7)
-        errors.append(largest_difference(state, 0.8))
+        state = solve(
+            Contact(
+                PAIR,
+                generate_surface(grid, **shape),
+                plasticity=ExpandingCavity(1e9),
+            ),
+            1e-7,
+        )
+        errors.append(state.contact.plasticity.difference(state.contact, 0.8))
     assert errors == sorted(errors)
     assert errors[0] == approx(0.03, rel=0.1)
     assert errors[2] > 1.4 * errors[0]
 
 
-@pytest.mark.parametrize("model", ["equilibrium", "truncated"])
-def test_the_tables_reach_one_where_first_yield_may_be_missed(model):
-    state = solve(contact(yield_pressure=2.8e9, plasticity=model), 1e-7)
-    restitutions, errors = _CONSTANT[model]
-    assert list(restitutions) == sorted(set(restitutions))
-    assert largest_difference(state, 1.0) == 0.07
-    for e, error in zip(restitutions, errors, strict=True):
-        assert largest_difference(state, e) == approx(error)
+@pytest.mark.parametrize(("model", "table"), [("equilibrium", constant), ("truncated", truncated)])
+def test_the_tables_reach_one_where_first_yield_may_be_missed(model, table):
+    assert list(table._RESTITUTION) == sorted(set(table._RESTITUTION))
+    assert difference(model, 0.0, 1.0) == 0.07
+    for e, error in zip(table._RESTITUTION, table._DIFFERENCE, strict=True):
+        assert difference(model, 0.0, e) == approx(error)

@@ -9,11 +9,13 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from contact_keys import contact_of
 from restitution import Body, Contact, Grid, Pair, Surface, solve, solve_at_pressure, step
-from restitution.contact.cohesive import box_gap, needed_spacing, rigid_start
-from restitution.contact.cohesive_path import follow
+from restitution.contact.cohesive.equilibrium import box_gap, rigid_start
+from restitution.contact.cohesive.law import Cohesive
+from restitution.contact.cohesive.path import follow, separation_of
+from restitution.contact.jkr.limit import JKRLimit
 from restitution.contact.path import unloading_path
-from restitution.contact.separation import separation_of
 from restitution.errors import CaseError, DomainError
 from restitution.numerics.quadrature import integrate_curve
 from restitution.theory import LennardJones
@@ -40,7 +42,7 @@ def rough(nodes, height, *, cells=0.3, seed=0, **model):
     surface = Surface(height * Z0 * z / np.ptp(z), grid)
     model = {"work_of_adhesion": W, "adhesion": "cohesive", **model}
     model = {"equilibrium_separation": Z0, "pair": pair_of(E_STAR), **model}
-    return Contact(surface=surface, periodic=True, **model)
+    return contact_of(surface=surface, periodic=True, **model)
 
 
 def per_area(contact):
@@ -97,14 +99,7 @@ def test_the_wave_of_johnson(alpha):
     amplitude = math.sqrt(2 * W * wavelength / (math.pi**2 * modulus)) / alpha
     grid = Grid((nodes, 1), wavelength / nodes)
     z = amplitude * np.cos(2 * np.pi * (np.arange(nodes) + 0.31) / nodes)[:, None]
-    contact = Contact(
-        pair_of(modulus),
-        Surface(z, grid),
-        work_of_adhesion=W,
-        adhesion="cohesive",
-        equilibrium_separation=z0,
-        periodic=True,
-    )
+    contact = Contact(pair_of(modulus), Surface(z, grid), adhesion=Cohesive(W, z0), periodic=True)
     full = math.pi * modulus * amplitude / wavelength
     psi = np.linspace(0.02, 1.2, 20000)
     log = np.log(np.sin(psi))
@@ -229,7 +224,7 @@ def test_a_surface_moved_across_the_boundary_has_the_same_contact():
 
 def test_without_attraction_it_is_the_contact_without_adhesion():
     contact = rough((32, 32), 100, work_of_adhesion=1e-5)
-    without = replace(contact, work_of_adhesion=0.0)
+    without = replace(contact, adhesion=None)
     depth = 0.5 * float(contact.gap.mean())
     state, hard = solve(contact, depth), solve(without, depth)
     # The repulsion gives way by a part of the range.
@@ -240,12 +235,12 @@ def test_without_attraction_it_is_the_contact_without_adhesion():
 
 def test_what_is_refused():
     contact = rough(16, 3)
-    with pytest.raises(CaseError, match='adhesion: "jkr" is not defined for a periodic contact'):
-        replace(contact, adhesion="jkr")
+    with pytest.raises(CaseError, match="adhesion: the JKR limit is not defined"):
+        replace(contact, adhesion=JKRLimit(W))
     with pytest.raises(CaseError, match="contact: the bodies attract each other"):
         solve_at_pressure(contact, 1e8)
     coarse = rough(16, 3, cells=0.31)
-    assert needed_spacing(coarse) == approx(0.3 * LENGTH)
+    assert coarse.adhesion.coarsest_spacing(coarse.pair) == approx(0.3 * LENGTH)
     with pytest.raises(CaseError, match=r"grid.spacing: .* is too coarse for the range"):
         solve(coarse, Z0)
     with pytest.raises(DomainError, match=r"indentation: .* the pressure exceeds E\*"):

@@ -7,10 +7,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from restitution.contact import prescribed_force
 from restitution.contact.contact import Contact, smooth
 from restitution.contact.loading import solve, step
-from restitution.contact.prescribed_force import solve_at_force
+from restitution.contact.plasticity.bound import ConstantBound
+from restitution.contact.prescribed import force as prescribed_force
+from restitution.contact.prescribed.force import solve_at_force
 from restitution.errors import CaseError, DomainError, NotConvergedError
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface
@@ -82,7 +83,7 @@ def test_a_force_on_the_plateau_of_one_yielded_node_has_a_depth(pair):
     grid = Grid((33, 33), (0.25 * UM, 0.25 * UM))
     z = np.zeros(grid.nodes)
     z[16, 16] = 100 * NM
-    contact = Contact(pair, Surface(z, grid), P_Y)
+    contact = Contact(pair, Surface(z, grid), plasticity=ConstantBound(P_Y))
     one = P_Y * grid.cell_area
     depths = []
     for force in (0.9 * one, one, 1.1 * one):

@@ -3,12 +3,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from restitution.contact import prescribed_velocity
+from contact_keys import models_of
 from restitution.contact.bodies import Body, Pair
 from restitution.contact.contact import Contact, smooth
+from restitution.contact.jkr.limit import JKRLimit
 from restitution.contact.loading import solve
 from restitution.contact.path import loading_path
-from restitution.contact.prescribed_velocity import solve_at_velocity
+from restitution.contact.prescribed import velocity as prescribed_velocity
+from restitution.contact.prescribed.velocity import solve_at_velocity
 from restitution.errors import CaseError, DomainError
 from restitution.numerics.grid import Grid
 from restitution.theory import ThorntonNing
@@ -33,7 +35,7 @@ def _velocity(state):
     ],
 )
 def test_the_velocity_is_met_and_the_depth_found(rough_contact, rms, model, tolerance):
-    contact = replace(rough_contact(rms=rms), **model)
+    contact = replace(rough_contact(rms=rms), **models_of(**model))
     known = solve(contact, 40 * NM)
     found = solve_at_velocity(contact, _velocity(known))
     assert _velocity(found) == approx(_velocity(known), rel=1e-6 if tolerance == 1e-6 else 1e-4)
@@ -91,7 +93,7 @@ def test_a_work_that_is_negative_at_small_depths_is_no_way_back():
     """Adhesion attracts the bodies, so the loading work is negative at first touch."""
     body = Body(20e-6, 5e9, 0.3, 1500.0)
     grid = Grid((48, 48), (0.12e-6, 0.12e-6))
-    contact = Contact(Pair(body, body), smooth(grid), work_of_adhesion=0.3)
+    contact = Contact(Pair(body, body), smooth(grid), adhesion=JKRLimit(0.3))
     shallow = solve(contact, 1e-9)
     assert shallow.loading_work < 0
     state = solve_at_velocity(contact, 0.05)

@@ -5,7 +5,9 @@ import math
 import pytest
 
 from restitution import Body, Contact, Grid, Pair, smooth, solve
-from restitution.contact.checks.pull_off import pull_off_error
+from restitution.contact.checks.model_error import pull_off_error
+from restitution.contact.cohesive.law import Cohesive
+from restitution.contact.jkr.limit import JKRLimit
 from tolerance import approx
 
 SPHERE = Body(radius=5e-6, youngs_modulus=70e9, poissons_ratio=0.2)
@@ -17,16 +19,13 @@ def test_a_hard_sphere_pulls_more_than_in_the_jkr_limit(z0, least, most):
     contact = Contact(
         Pair(SPHERE, SPHERE),
         smooth(Grid(64, 6e-9)),
-        work_of_adhesion=0.05,
-        equilibrium_separation=z0,
+        adhesion=JKRLimit(0.05, equilibrium_separation=z0),
     )
     assert least < pull_off_error(solve(contact, 1e-9), 1.0) < most
 
 
 def test_an_attraction_of_finite_range_leaves_the_steps():
-    contact = Contact(
-        Pair(SPHERE, SPHERE), smooth(Grid(64, 6e-9)), work_of_adhesion=0.05, adhesion="cohesive"
-    )
+    contact = Contact(Pair(SPHERE, SPHERE), smooth(Grid(64, 6e-9)), adhesion=Cohesive(0.05))
     state = solve(contact, 1e-9)
     assert pull_off_error(state, 3e-7) == approx(0.02 * 3e-7)
     assert math.isnan(pull_off_error(state, math.nan))

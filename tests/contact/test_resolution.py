@@ -6,16 +6,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from restitution.case.models import adhesion_of
 from restitution.contact.bodies import Body, Pair
-from restitution.contact.checks import resolution
-from restitution.contact.checks.finding import Finding
+from restitution.contact.checks.findings import (
+    AdhesionUnresolved,
+    FinerThanScan,
+    PatchesUnresolved,
+)
 from restitution.contact.checks.resolution import (
     NODES_PER_PATCH,
-    adhesive_nodes,
     adhesive_spacing,
     coarse_scan,
     divisions,
-    expected_pull_off_error,
     grid_of_a_scan,
     median_patch,
     predicted_radius,
@@ -25,8 +27,12 @@ from restitution.contact.checks.resolution import (
     unresolved_adhesion,
     unresolved_patches,
 )
+from restitution.contact.cohesive import law
+from restitution.contact.cohesive.law import Cohesive
 from restitution.contact.contact import Contact, smooth
+from restitution.contact.jkr.limit import ADHESIVE_NODES, JKRLimit
 from restitution.contact.loading import solve
+from restitution.contact.plasticity.bound import ConstantBound
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface
 from tolerance import approx
@@ -63,7 +69,11 @@ def contact(pair):
 
     def make(pair=pair, yield_pressure=math.inf, **provenance):
         grid = Grid((64, 100), (0.25e-6, 0.2e-6))
-        return Contact(pair, Surface(np.zeros(grid.nodes), grid, provenance), yield_pressure)
+        return Contact(
+            pair,
+            Surface(np.zeros(grid.nodes), grid, provenance),
+            plasticity=ConstantBound(yield_pressure),
+        )
 
     return make
 
@@ -77,13 +87,13 @@ def test_a_contact_larger_than_the_grid_is_predicted(contact):
     assert resolution_findings(contact(), just) == []
     (found,) = resolution_findings(contact(), beyond)
     assert found.code == "contact-beyond-grid"
-    assert found["radius"] == approx(8.01e-6, rel=1e-12)
-    assert (found["half_width"], found["indentation"]) == (approx(8e-6, rel=1e-12), beyond)
-    assert not found["whole_scan"]
+    assert found.radius == approx(8.01e-6, rel=1e-12)
+    assert (found.half_width, found.indentation) == (approx(8e-6, rel=1e-12), beyond)
+    assert not found.whole_scan
     (found,) = resolution_findings(
         contact(source="measured", size_x_m=16e-6, size_y_m=20e-6), beyond
     )
-    assert found["whole_scan"]
+    assert found.whole_scan
     # yielding widens the contact; an elastic contact would fit
     assert len(resolution_findings(contact(yield_pressure=1e6), just)) == 1
 
@@ -92,14 +102,14 @@ def test_a_contact_on_few_nodes_is_found(contact):
     assert resolution_findings(contact(), (2.01e-6) ** 2 / R) == []
     (found,) = resolution_findings(contact(), (1e-6) ** 2 / R)
     assert found.code == "few-nodes"
-    assert found["radius"] / found["spacing"] == approx(4, rel=1e-12)
+    assert found.radius / found.spacing == approx(4, rel=1e-12)
 
 
 def test_a_sphere_too_small_for_a_half_space_is_found(contact):
     tiny = Body(20e-6, 210e9, 0.25)
     (found,) = resolution_findings(contact(Pair(tiny, tiny)), (3e-6) ** 2 / 10e-6)
     assert found.code == "no-half-space"
-    assert found["radius"] / found["reduced_radius"] == approx(0.3, rel=1e-12)
+    assert found.radius / found.reduced_radius == approx(0.3, rel=1e-12)
 
 
 def test_a_grid_finer_than_the_scan_is_found(contact):
@@ -107,23 +117,23 @@ def test_a_grid_finer_than_the_scan_is_found(contact):
     assert resolution_findings(contact(pixel_x_m=0.2e-6), deep) == []
     assert resolution_findings(contact(pixel_x_m=0.2015e-6), deep) == []  # rounded by the user
     found = resolution_findings(contact(pixel_x_m=0.5e-6), deep)
-    assert found == [Finding("finer-than-scan", {"spacing": 0.2e-6, "pixel": 0.5e-6})]
+    assert found == [FinerThanScan(spacing=0.2e-6, pixel=0.5e-6)]
     # cells that are finer only because refinement was chosen
     assert resolution_findings(contact(pixel_x_m=0.4e-6, refined=2), deep) == []
     found = resolution_findings(contact(pixel_x_m=0.5e-6, refined=2), deep)
-    assert found == [Finding("finer-than-scan", {"spacing": 0.4e-6, "pixel": 0.5e-6})]
+    assert found == [FinerThanScan(spacing=0.4e-6, pixel=0.5e-6)]
 
 
 def test_a_scan_coarser_than_the_contact_is_found(contact):
     shallow = (1e-6) ** 2 / R
     scan = contact(source="measured", file="scan.txt", pixel_x_m=1.5e-6)
     found = coarse_scan(scan, shallow)
-    assert (found.code, found["file"], found["pixel"]) == (
+    assert (found.code, found.file, found.pixel) == (
         "pixel-above-contact",
         "scan.txt",
         1.5e-6,
     )
-    assert found["radius"] == approx(1e-6, rel=1e-12)
+    assert found.radius == approx(1e-6, rel=1e-12)
     assert coarse_scan(scan, 9 * shallow) is None
     assert coarse_scan(contact(source="generated", pixel_x_m=1.5e-6), shallow) is None
     assert coarse_scan(contact(), shallow) is None
@@ -146,22 +156,19 @@ def test_what_is_resolved_is_not_found():
 
 def test_unresolved_depths_are_counted_up_to_the_deepest():
     (found,) = unresolved_patches([1e-9, 5e-9, 20e-9, 40e-9], [1, NODES_PER_PATCH - 1, 3, 90])
-    assert found == Finding("patches-unresolved", {"few": 3, "depths": 4, "deepest": 20e-9})
+    assert found == PatchesUnresolved(few=3, depths=4, deepest=20e-9)
     # rough contacts can lose resolution with depth: the deepest unresolved depth is reported
     (found,) = unresolved_patches([7e-9, 3e-9], [1, 1])
-    assert found["deepest"] == 7e-9
+    assert found.deepest == 7e-9
     (found,) = unresolved_adhesion([1e-9, 2e-9, 3e-9], [4e-9, 4e-9, 8e-9], [5e-9, 3e-9, 7e-9], 8e-9)
-    assert found == Finding(
-        "adhesion-unresolved",
-        {
-            "few": 2,
-            "depths": 3,
-            "from": 2e-9,
-            "to": 3e-9,
-            "spacing": 4e-9,
-            "needed": 3e-9,
-            "refine": 4,
-        },
+    assert found == AdhesionUnresolved(
+        few=2,
+        depths=3,
+        first=2e-9,
+        last=3e-9,
+        spacing=4e-9,
+        needed=3e-9,
+        refine=4,
     )
 
 
@@ -196,12 +203,17 @@ def test_nine_tenths_of_both_edges_are_the_whole_scan(contact, size, whole):
     assert not grid_of_a_scan(contact(source="generated", **scan))
 
 
+def adhesive_nodes(state):
+    """Nodes per pull-off radius of the asperities in contact."""
+    return ADHESIVE_NODES * adhesive_spacing(state) / max(state.contact.grid.spacing)
+
+
 def adhesive(pair, curvatures, nodes=(40, 44)):
     """A paraboloid with these curvatures (1/m) besides those of the bodies, and w = 0.5 J/m2."""
     grid = Grid(nodes, (0.12e-6, 0.1e-6))
     x, y = grid.x[:, None], grid.y[None, :]
     height = -0.5 * (curvatures[0] * x**2 + curvatures[1] * y**2)
-    return Contact(pair, Surface(height, grid), work_of_adhesion=0.5)
+    return Contact(pair, Surface(height, grid), adhesion=JKRLimit(0.5))
 
 
 @pytest.mark.parametrize(
@@ -245,25 +257,25 @@ def test_the_error_of_pull_off_is_a_share_of_a_node(pair, detachment, share):
     a_c = (9 * math.pi * 0.1 * R**2 / (8 * pair.contact_modulus)) ** (1 / 3)
     for spacing in ((1e-7, 5e-8), (1e-8, 2e-8)):
         surface = smooth(Grid((8, 8), spacing))
-        coarse = Contact(pair, surface, work_of_adhesion=0.1, detachment=detachment)
+        coarse = Contact(
+            pair, surface, adhesion=adhesion_of(work_of_adhesion=0.1, detachment=detachment)
+        )
         expected = share * max(spacing) / a_c
-        assert expected_pull_off_error(coarse) == approx(expected, rel=1e-9)
+        assert coarse.adhesion.expected_pull_off_error(coarse) == approx(expected, rel=1e-9)
 
 
 @pytest.mark.parametrize("radius", [1e-6, 1e-3])
 def test_the_range_of_the_attraction_is_to_be_resolved_on_asperities(pair, radius, monkeypatch):
     """Cells of half sqrt(r z0) at asperities of radius r, and never more than for smooth bodies."""
     z0 = 0.3e-9
-    monkeypatch.setattr(resolution, "radius_of_asperities", lambda _: radius)
+    monkeypatch.setattr(law, "radius_of_asperities", lambda _: radius)
     largest = min(0.5 * math.sqrt(radius * z0), 0.3 * math.sqrt(pair.radius * z0))
     for share in (0.99, 1.01):
         grid = Grid(8, share * largest)
         contact = Contact(
             pair,
             smooth(grid),
-            adhesion="cohesive",
-            work_of_adhesion=0.1 * pair.contact_modulus * z0**2 / grid.spacing[0],
-            equilibrium_separation=z0,
+            adhesion=Cohesive(0.1 * pair.contact_modulus * z0**2 / grid.spacing[0], z0),
         )
         state = SimpleNamespace(contact=contact)
         assert adhesive_spacing(state) == approx(largest, rel=1e-6)

@@ -7,8 +7,8 @@ import pytest
 
 from restitution import Body, Contact, Grid, Pair, Surface, smooth
 from restitution.collision import collide
-from restitution.contact.cavity import yield_bound
 from restitution.contact.path import loading_path
+from restitution.contact.plasticity.cavity import ExpandingCavity, yield_bound
 from tolerance import approx
 
 Y = 1e9
@@ -22,11 +22,11 @@ def waves(amplitude, wavelength=4e-6, nodes=96):
     grid = Grid((nodes, nodes), (wavelength / 24, wavelength / 24))
     r = np.hypot(grid.x[:, None], grid.y[None, :])
     height = -amplitude * (1 - np.cos(2 * np.pi * r / wavelength))
-    return Contact(PAIR, Surface(height, grid), yield_strength=Y)
+    return Contact(PAIR, Surface(height, grid), plasticity=ExpandingCavity(Y))
 
 
 def test_rings_are_elongated_and_round_asperities_are_not():
-    ball = Contact(PAIR, smooth(Grid(96, 0.5e-6)), yield_strength=Y)
+    ball = Contact(PAIR, smooth(Grid(96, 0.5e-6)), plasticity=ExpandingCavity(Y))
     assert ball.elongation == approx(0, abs=1e-9)
     contact = waves(1e-7)
     middle = contact.grid.nodes[0] // 2

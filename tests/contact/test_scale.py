@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 from restitution.collision import collide
 from restitution.contact.bodies import Body, Pair
 from restitution.contact.loading import solve
-from restitution.contact.prescribed_force import solve_at_force
+from restitution.contact.prescribed.force import solve_at_force
 from tolerance import approx
 
 

@@ -1,6 +1,7 @@
 """Findings about the heights of scans: each on both sides of its limit, and its values."""
 
 import math
+from dataclasses import asdict
 
 import numpy as np
 import pytest
@@ -36,13 +37,13 @@ def codes(surface, radius=RADIUS):
 @pytest.mark.parametrize("sign", [1, -1])
 def test_the_sphere_of_the_particle_is_still_in_the_scan(steps, sign):
     (found,) = scan_findings(curved(sign * RADIUS, levelling=steps), RADIUS)
-    assert (found.code, found["file"], found["reduced_radius"]) == (
+    assert (found.code, found.file, found.reduced_radius) == (
         "curved-scan",
         "scan.npy",
         RADIUS,
     )
-    assert found["radius"] == approx(sign * RADIUS, rel=0.05)
-    assert found["explained"] > 0.9
+    assert found.radius == approx(sign * RADIUS, rel=0.05)
+    assert found.explained > 0.9
 
 
 def test_a_subtracted_sphere_is_not_found():
@@ -61,9 +62,9 @@ def test_curvature_counts_if_it_changes_the_contact():
 
 def test_a_tilted_sphere_needs_more_than_a_plane():
     tilted, bow = scan_findings(scan(curved().height + 0.05 * X), RADIUS)
-    assert (tilted.code, tilted["curved"], bow.code) == ("tilted-scan", True, "curved-scan")
+    assert (tilted.code, tilted.curved, bow.code) == ("tilted-scan", True, "curved-scan")
     (only,) = scan_findings(scan(ROUGH + 0.05 * X), RADIUS)
-    assert (only.code, only["curved"]) == ("tilted-scan", False)
+    assert (only.code, only.curved) == ("tilted-scan", False)
 
 
 def test_a_curved_scan_between_flat_bodies():
@@ -84,7 +85,7 @@ def test_an_extension_keeps_what_was_noted(how):
 def test_each_part_of_a_composite_is_looked_at():
     parts = [noted(curved(file="a.npy")), noted(scan(ROUGH + 0.05 * X, file="b.npy"))]
     found = scan_findings(composite(parts), RADIUS)
-    assert [(each.code, each["file"]) for each in found] == [
+    assert [(each.code, each.file) for each in found] == [
         ("curved-scan", "a.npy"),
         ("tilted-scan", "b.npy"),
     ]
@@ -98,7 +99,7 @@ def spoiled(height):
 
 def test_spikes_come_before_the_slope_that_they_cause():
     (found,) = scan_findings(spoiled(5e-6))
-    assert (found.code, found["count"], found["threshold"]) == ("spikes", 21, 8)
+    assert (found.code, found.count, found.threshold) == ("spikes", 21, 8)
     assert too_steep(spoiled(5e-6)) is None
     assert too_steep(spoiled(50e-6)).code == "spikes"
 
@@ -111,5 +112,5 @@ def test_slopes_above_three_are_refused(pair):
     assert impossible(contact, 1e-7) is None
     assert "steep-surface" in [found.code for found in doubtful(contact, 1e-7)]
     found = impossible(Contact(pair, Surface(zigzag(3.01), GRID)), 1e-7)
-    assert dict(found.values) == {"slope": approx(3.01), "limit": 3.0, "file": ""}
-    assert impossible(Contact(pair, scan(zigzag(3.01))), 1e-7)["file"] == "scan.npy"
+    assert asdict(found) == {"slope": approx(3.01), "limit": 3.0, "file": ""}
+    assert impossible(Contact(pair, scan(zigzag(3.01))), 1e-7).file == "scan.npy"

@@ -8,7 +8,12 @@ import numpy as np
 import pytest
 
 from restitution import Body, Contact, Grid, Pair, collide, generate_surface, smooth, solve
-from restitution.contact import separation
+from restitution.case.models import adhesion_of
+from restitution.contact.cohesive import path as cohesive_path
+from restitution.contact.jkr import separation
+from restitution.contact.jkr.detachment import CrackClosure
+from restitution.contact.jkr.limit import HertzianApproach, JKRLimit, PullIncrements
+from restitution.contact.plasticity.bound import ConstantBound
 from restitution.errors import NotConvergedError
 from tolerance import approx
 
@@ -18,7 +23,9 @@ STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25)
 @pytest.fixture(scope="module")
 def pressed():
     grid = Grid((31, 31), (0.15e-6, 0.15e-6))
-    contact = Contact(Pair(STEEL, STEEL), smooth(grid), work_of_adhesion=0.09, approach="hertzian")
+    contact = Contact(
+        Pair(STEEL, STEEL), smooth(grid), adhesion=JKRLimit(0.09, approach=HertzianApproach())
+    )
     return solve(contact, 3e-9)
 
 
@@ -43,9 +50,7 @@ def loaded(detachment, n=40, depth=3.5e-9):
     contact = Contact(
         Pair(STEEL, STEEL),
         smooth(grid),
-        work_of_adhesion=0.09,
-        approach="hertzian",
-        detachment=detachment,
+        adhesion=adhesion_of(work_of_adhesion=0.09, approach="hertzian", detachment=detachment),
     )
     return solve(contact, depth)
 
@@ -78,10 +83,10 @@ def test_steps_stop_where_the_grid_has_the_larger_error(monkeypatch):
     once = list(separation.separate(state, tolerance=1e-6))
     monkeypatch.setattr(separation, "_REFINEMENTS", (1, 2, 4))
     error = separation.separation_of(once).error
-    fraction = error / (state.contact.work_of_adhesion * state.contact_area)
-    monkeypatch.setattr(separation, "_SMALL", {"crack-closure": 1.01 * fraction})
+    fraction = error / (state.contact.adhesion.work_of_adhesion * state.contact_area)
+    monkeypatch.setattr(CrackClosure, "small_error", 1.01 * fraction)
     assert len(list(separation.separate(state, tolerance=1e-6))) == len(once)
-    monkeypatch.setattr(separation, "_SMALL", {"crack-closure": 0.99 * fraction})
+    monkeypatch.setattr(CrackClosure, "small_error", 0.99 * fraction)
     assert len(list(separation.separate(state, tolerance=1e-6))) > len(once)
 
 
@@ -89,7 +94,7 @@ def test_the_error_holds_what_the_grid_takes_in_letting_go(pressed):
     """Crack closure releases at 0.985 to 0.99 of w, in steps of any size."""
     path = list(separation.separate(pressed))
     found, whole = separation.separation_of(path), collide(pressed, path)
-    surface_energy = pressed.contact.work_of_adhesion * pressed.contact_area
+    surface_energy = pressed.contact.adhesion.work_of_adhesion * pressed.contact_area
     added = whole.unloading_work_error - found.error
     assert 0.01 * surface_energy < added < 0.02 * surface_energy
 
@@ -101,7 +106,9 @@ def test_no_step_jumps_over_the_tension():
     """
     grid = Grid((128, 128), (0.25e-6, 0.25e-6))
     surface = generate_surface(grid, kind="gaussian", rms=0.1e-6, correlation_length=2e-6, seed=2)
-    contact = Contact(Pair(STEEL, STEEL), surface, 750e6, work_of_adhesion=0.09)
+    contact = Contact(
+        Pair(STEEL, STEEL), surface, plasticity=ConstantBound(750e6), adhesion=JKRLimit(0.09)
+    )
     path = list(separation.separate(solve(contact, 200e-9)))
     assert sum(state.force < 0 for state in path) > 15
     assert separation.separation_of(path).pull_off_force == approx(2.2e-4, rel=0.08)
@@ -112,9 +119,8 @@ def test_a_seed_that_lets_go_of_everything_is_parted_and_returns_nothing():
     contact = Contact(
         Pair(STEEL, STEEL),
         smooth(Grid(32, 0.5e-6)),
-        1e6,
-        work_of_adhesion=1e-3,
-        approach="pull-increments",
+        plasticity=ConstantBound(1e6),
+        adhesion=JKRLimit(1e-3, approach=PullIncrements()),
     )
     state = solve(contact, 1e-10)
     assert (state.contact_nodes, state.force, state.contact_area) == (0, 0.0, 0.0)
@@ -170,7 +176,7 @@ def test_the_error_of_unloading_is_the_sum_of_its_parts(detachment, late_share, 
         assert limited.error == approx(steps + curve.work() - limit + unaccounted, rel=1e-6)
 
 
-def test_the_largest_tension_is_that_of_a_parabola(monkeypatch):
+def test_the_largest_tension_is_that_of_a_parabola():
     """Through the state of the largest tension and both beside it, unless one of them jumped."""
 
     def path(depths, jumps=(0, 0, 0, 0)):
@@ -178,15 +184,14 @@ def test_the_largest_tension_is_that_of_a_parabola(monkeypatch):
         numbers = zip(depths, states, jumps, strict=True)
         return [SimpleNamespace(indentation=x, force=F, jumps=n) for x, F, n in numbers]
 
-    monkeypatch.setattr(separation, "_jumps", lambda state: state.jumps)
     inside = path((0.32, 0.31, 0.298, 0.28))
-    assert separation._largest_tension(inside) == approx(5.0, rel=1e-9)
+    assert cohesive_path._largest_tension(inside) == approx(5.0, rel=1e-9)
     coarse = -inside[2].force
     assert coarse < 5 * (1 - 1e-3)
     for jumps in ((0, 0, 0, 1), (0, 1, 1, 1), (0, 0, 1, 1)):
         jumped = path((0.32, 0.31, 0.298, 0.28), jumps)
         expected = 5.0 if jumps == (0, 1, 1, 1) else coarse
-        assert separation._largest_tension(jumped) == approx(expected, rel=1e-9)
+        assert cohesive_path._largest_tension(jumped) == approx(expected, rel=1e-9)
     for ends in (inside[2:], inside[:3]):
-        assert separation._largest_tension(ends) == coarse
-    assert separation._largest_tension(path((0.35, 0.34, 0.33, 0.32))) == 0.0
+        assert cohesive_path._largest_tension(ends) == coarse
+    assert cohesive_path._largest_tension(path((0.35, 0.34, 0.33, 0.32))) == 0.0

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import restitution as rs
-from restitution.contact.stiffness import normal_stiffness
+from contact_keys import contact_of
+from restitution.contact.prescribed.stiffness import normal_stiffness
 from restitution.errors import CaseError
 from restitution.theory import LennardJones
 from tolerance import approx
@@ -21,14 +22,14 @@ COMPLETE = math.pi * E * AMPLITUDE / WAVELENGTH
 def wave(nodes, **model):
     grid = rs.Grid((nodes, 4), WAVELENGTH / nodes)
     z = AMPLITUDE * np.cos(2 * np.pi * grid.x / WAVELENGTH)
-    return rs.Contact(FLAT, rs.Surface(np.tile(z[:, None], 4), grid), **model, periodic=True)
+    return contact_of(FLAT, rs.Surface(np.tile(z[:, None], 4), grid), **model, periodic=True)
 
 
 def rough(rms=50e-9, spacing=0.25e-6, **model):
     grid = rs.Grid(64, spacing)
     waves = {"hurst": 0.8, "rolloff": 32 * spacing, "shortest": 8 * spacing}
     surface = rs.generate_surface(grid, kind="self-affine", rms=rms, seed=1, **waves)
-    return rs.Contact(FLAT, surface, **model, periodic=True)
+    return contact_of(FLAT, surface, **model, periodic=True)
 
 
 def slope(contact, indentation, step):
@@ -77,8 +78,8 @@ def test_a_contact_with_attraction(indentation):
 def test_flat_bodies_with_attraction_have_the_stiffness_of_the_law():
     contact = rough(1e-14, 20e-9, work_of_adhesion=0.05, adhesion="cohesive")
     state = rs.solve(contact, 1e-14)
-    law = LennardJones(0.05, contact.equilibrium_separation)
-    z0 = contact.equilibrium_separation
+    law = LennardJones(0.05, contact.adhesion.equilibrium_separation)
+    z0 = contact.adhesion.equilibrium_separation
     k = (float(law.traction(z0 * (1 + 1e-6))) - float(law.traction(z0 * (1 - 1e-6)))) / (2e-6 * z0)
     assert normal_stiffness(state) == approx(k, rel=1e-3)
 

@@ -16,6 +16,7 @@ from restitution.contact.influence import (
     love_displacement,
     shear_half_space,
 )
+from restitution.contact.jkr.limit import JKRLimit
 from restitution.contact.tangential import shear
 from restitution.errors import CaseError, NotConvergedError
 from tolerance import approx
@@ -316,7 +317,7 @@ def test_bad_arguments_are_refused(rough_contact):
     other = shear(solve(rough_contact(nodes=(20, 20)), 50e-9), 1e-9, MU)
     with pytest.raises(CaseError, match="on another grid"):
         shear(state, 1e-9, MU, history=other)
-    adhesive = replace(state, contact=replace(state.contact, work_of_adhesion=0.1))
+    adhesive = replace(state, contact=replace(state.contact, adhesion=JKRLimit(0.1)))
     with pytest.raises(CaseError, match="only without adhesion"):
         shear(adhesive, 1e-9, MU)
     with pytest.raises(NotConvergedError, match="tangential solve"):

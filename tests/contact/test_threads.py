@@ -9,6 +9,8 @@ from numpy.testing import assert_array_equal
 
 from restitution import Contact, operator_cache, solve, step
 from restitution.contact.influence import half_space, inverse_half_space
+from restitution.contact.jkr.limit import JKRLimit
+from restitution.contact.plasticity.bound import ConstantBound
 
 THREADS = 4
 DEPTH = 40e-9
@@ -27,11 +29,11 @@ def in_threads(work):
         return list(threads.map(begin, range(THREADS)))
 
 
-@pytest.mark.parametrize("adhesion", [0.0, 0.05])
+@pytest.mark.parametrize("adhesion", [None, JKRLimit(0.05)])
 def test_one_contact_in_several_threads_is_the_same_to_the_last_digit(rough_contact, adhesion):
     """All threads load one contact to the same depth and unload it a little."""
     plain = rough_contact((170, 180), (0.08e-6, 0.08e-6), yield_pressure=2e9)
-    contact = Contact(plain.pair, plain.surface, 2e9, work_of_adhesion=adhesion)
+    contact = Contact(plain.pair, plain.surface, plasticity=ConstantBound(2e9), adhesion=adhesion)
 
     def work(_):
         state = solve(contact, DEPTH)

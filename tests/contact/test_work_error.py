@@ -6,8 +6,15 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
+from contact_keys import load
 from restitution import Body, Contact, Grid, Pair, generate_surface, smooth, solve
-from restitution.contact import adhesive_work, loading
+from restitution.case.models import adhesion_of
+from restitution.contact.jkr import limit
+from restitution.contact.jkr import loading_work as adhesive_work
+from restitution.contact.plasticity import truncated
+from restitution.contact.plasticity.bound import ConstantBound
+from restitution.contact.plasticity.cavity import ExpandingCavity
+from restitution.contact.plasticity.truncated import Truncated
 from tolerance import approx
 
 BODY = Body(1e-3, 420e9, 0.3, 7850.0)
@@ -19,7 +26,12 @@ def adhesive(seed, approach="equilibrium"):
     grid = Grid((40, 40), (0.4e-6, 0.4e-6))
     shape = {"kind": "gaussian", "rms": 1e-8, "correlation_length": 2e-6}
     surface = generate_surface(grid, seed=seed, **shape)
-    return Contact(PAIR, surface, 3e9, work_of_adhesion=1.0, approach=approach)
+    return Contact(
+        PAIR,
+        surface,
+        plasticity=ConstantBound(3e9),
+        adhesion=adhesion_of(work_of_adhesion=1.0, approach=approach),
+    )
 
 
 def test_it_holds_where_the_grid_pins_the_edge_of_the_contact():
@@ -28,7 +40,7 @@ def test_it_holds_where_the_grid_pins_the_edge_of_the_contact():
     state = solve(contact, DEPTH)
     depths, forces, start = np.linspace(0, DEPTH, 241), [], None
     for depth in depths:
-        start = loading.solve_without_work(contact, float(depth), start=start, residual=1e-6)
+        start = load(contact, float(depth), start=start, residual=1e-6)
         forces.append(start.force)
     assert abs(np.trapezoid(forces, depths) - state.loading_work) <= state.work_error
 
@@ -63,15 +75,15 @@ def test_it_holds_all_that_the_quadrature_says(monkeypatch):
 
 def test_a_cut_adds_ten_tolerances(monkeypatch):
     """Errors reached nine tolerances in validation contacts, whatever the quadrature stated."""
-    quadrature, asked = loading.integrate_adaptively, []
+    quadrature, asked = truncated.integrate_adaptively, []
 
     def without_error(*args, **options):
         asked.append(args[5])
         return quadrature(*args, **options)[0], 0.0
 
-    monkeypatch.setattr(loading, "integrate_adaptively", without_error)
+    monkeypatch.setattr(truncated, "integrate_adaptively", without_error)
     grid = Grid((40, 40), (0.4e-6, 0.4e-6))
-    contact = Contact(PAIR, smooth(grid), 1e9, plasticity="truncated")
+    contact = Contact(PAIR, smooth(grid), plasticity=Truncated(1e9))
     state = solve(contact, DEPTH)
     assert state.work_error == approx(10 * asked[0], rel=1e-9)
     assert asked[0] > 0
@@ -80,7 +92,7 @@ def test_a_cut_adds_ten_tolerances(monkeypatch):
 def test_increments_add_parts_of_what_the_growth_of_the_bound_adds():
     """The error is 1/10 for nodes that had yielded before and 1/4 for nodes that begin to yield."""
     grid = Grid((64, 64), (0.5e-6, 0.5e-6))
-    contact = Contact(PAIR, smooth(grid), yield_strength=1e9)
+    contact = Contact(PAIR, smooth(grid), plasticity=ExpandingCavity(1e9))
     before = solve(contact, 1.5e-7)
     after = solve(contact, 2e-7, start=before)
     given = after.plastic_displacement - before.plastic_displacement
@@ -138,8 +150,8 @@ def test_the_error_of_a_start_counts_once(monkeypatch):
 
 
 def test_pinning_adds_to_the_quadrature_of_balances_once(monkeypatch):
-    monkeypatch.setattr(loading, "balances_are_reliable", lambda _: True)
-    monkeypatch.setattr(loading, "work_by_balance", lambda *_: (1e-12, 3e-16, 0))
+    monkeypatch.setattr(limit, "balances_are_reliable", lambda _: True)
+    monkeypatch.setattr(limit, "work_by_balance", lambda *_: (1e-12, 3e-16, 0))
     contact = adhesive(1)
     first = solve(contact, 0.5 * DEPTH)
     second = solve(contact, DEPTH, start=first)

@@ -9,8 +9,10 @@ from types import SimpleNamespace
 import pytest
 
 from restitution import Body, Contact, Grid, Pair, smooth, solve
+from restitution.case.models import plasticity_of
 from restitution.collision import collide
-from restitution.contact.model_error import depth_difference, largest_difference, model_error
+from restitution.contact.checks.model_error import depth_difference, model_error
+from restitution.contact.plasticity.cavity import ExpandingCavity
 from restitution.errors import CaseError
 from tolerance import approx
 
@@ -25,15 +27,15 @@ needs_references = pytest.mark.skipif(
 
 def at(contact_radius, yields, pair=None, plasticity="expanding-cavity"):
     """What the error looks at in a state of smooth bodies."""
+    yielding = {"yield_strength": 1e9, "yield_pressure": 2.8e9}
+    del yielding["yield_pressure" if plasticity == "expanding-cavity" else "yield_strength"]
     return SimpleNamespace(
         contact_area=math.pi * (contact_radius * R) ** 2,
         contact=SimpleNamespace(
             pair=pair or Pair(BALL, WALL),
             yields=yields,
-            grows=plasticity == "expanding-cavity",
-            plasticity=plasticity,
+            plasticity=plasticity_of(plasticity, **yielding),
             slope=0.0,
-            yield_strength=1e9,
         ),
     )
 
@@ -41,7 +43,7 @@ def at(contact_radius, yields, pair=None, plasticity="expanding-cavity"):
 def bound(row):
     state = at(float(row["contact_radius"]), YIELDS[row["body"]], plasticity=row["model"])
     e = float(row["restitution"])
-    return largest_difference(state, e) * e + depth_difference(state, e)
+    return state.contact.plasticity.difference(state.contact, e) * e + depth_difference(state, e)
 
 
 def references():
@@ -104,7 +106,10 @@ def test_two_equal_spheres_are_one_sphere_on_a_rigid_flat():
 def test_a_row_contains_it():
     strength = 0.003 * 0.5 * E / (1 - 0.3**2)
     contact = Contact(
-        Pair(BALL, WALL), smooth(Grid(64, 0.5 * R / 64)), yield_strength=strength, yields="first"
+        Pair(BALL, WALL),
+        smooth(Grid(64, 0.5 * R / 64)),
+        plasticity=ExpandingCavity(strength),
+        yields="first",
     )
     state = solve(contact, 0.01 * R)
     e = collide(state).restitution

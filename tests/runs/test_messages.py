@@ -8,6 +8,7 @@ import pytest
 
 from restitution import Body, Contact, Grid, Pair, Surface, generate_surface, smooth
 from restitution.case.case_file import parse_case
+from restitution.case.models import adhesion_of
 from restitution.contact.checks.resolution import (
     NODES_PER_PATCH,
     NODES_PER_RADIUS,
@@ -15,6 +16,7 @@ from restitution.contact.checks.resolution import (
     unresolved_patches,
 )
 from restitution.contact.path import loading_path
+from restitution.contact.plasticity.bound import ConstantBound
 from restitution.curve.follow import loaded
 from restitution.errors import CaseError, DomainError, NotConvergedError, SurfaceError
 from restitution.runs.depths import loads_of
@@ -34,11 +36,15 @@ ROUGH = generate_surface(GRID, kind="gaussian", rms=2e-8, correlation_length=3e-
 
 def measured(height, **provenance):
     provenance = {"source": "measured", "file": "scan.npy", "levelling": "none", **provenance}
-    return Contact(STEEL, Surface(height, GRID, provenance), 750e6)
+    return Contact(
+        STEEL,
+        Surface(height, GRID, provenance),
+        plasticity=ConstantBound(750e6),
+    )
 
 
 def test_a_good_contact_is_let_pass():
-    assert input_warnings(Contact(STEEL, smooth(GRID), 750e6), 4e-7) == []
+    assert input_warnings(Contact(STEEL, smooth(GRID), plasticity=ConstantBound(750e6)), 4e-7) == []
     assert input_warnings(Contact(STEEL, smooth(GRID)), 4e-7) == []
     assert input_warnings(measured(ROUGH), 4e-7) == []
 
@@ -79,7 +85,7 @@ def test_impossible_slopes_name_the_unit():
     steep = 1000 * ROUGH
     unscanned = Surface(steep, GRID, {"source": "generated"})
     with pytest.raises(SurfaceError, match=r"slope is 2\d.*above 3 .*the unit of roughness\.rms"):
-        require_possible(Contact(STEEL, unscanned, 750e6), 4e-7)
+        require_possible(Contact(STEEL, unscanned, plasticity=ConstantBound(750e6)), 4e-7)
     with pytest.raises(SurfaceError, match=r"the unit of the heights in scan\.npy"):
         require_possible(measured(steep), 4e-7)
     (line,) = surface_warnings(unscanned)
@@ -88,15 +94,24 @@ def test_impossible_slopes_name_the_unit():
 
 def test_contact_at_the_rim_is_foreseen_where_smooth_bodies_would_not_have_it():
     bump = 8e-7 * np.exp(-(((X + 14e-6) / 1e-6) ** 2) - (Y / 1e-6) ** 2)
-    lines = input_warnings(Contact(STEEL, Surface(bump, GRID), 750e6), 1e-7)
+    lines = input_warnings(
+        Contact(STEEL, Surface(bump, GRID), plasticity=ConstantBound(750e6)),
+        1e-7,
+    )
     assert len(lines) == 1
     assert "predicted to reach the edge of the grid" in lines[0]
     assert "first at x = -14 um, y = 0 um, off the centre" in lines[0]
     # a ridge that is lower than the centre, but not by enough
     ridge = 3.5e-7 * np.exp(-(((X - 15e-6) / 2e-6) ** 2)) + 0 * Y
-    (line,) = input_warnings(Contact(STEEL, Surface(ridge, GRID), 750e6), 4e-7)
+    (line,) = input_warnings(
+        Contact(STEEL, Surface(ridge, GRID), plasticity=ConstantBound(750e6)),
+        4e-7,
+    )
     assert "the gap there is 151.7 nm" in line
-    (line,) = input_warnings(Contact(STEEL, Surface(ridge, GRID), 750e6), 5e-8)
+    (line,) = input_warnings(
+        Contact(STEEL, Surface(ridge, GRID), plasticity=ConstantBound(750e6)),
+        5e-8,
+    )
     assert "has only 7.5 nodes at the spacing" in line
 
 
@@ -110,7 +125,12 @@ def test_what_reaches_the_edge_is_foreseen_before(yield_pressure, rms, work_of_a
         if rms:
             shape = {"kind": "gaussian", "rms": rms, "correlation_length": 2e-6, "seed": 3}
             surface = generate_surface(grid, **shape)
-        contact = Contact(STEEL, surface, yield_pressure, work_of_adhesion=work_of_adhesion)
+        contact = Contact(
+            STEEL,
+            surface,
+            plasticity=ConstantBound(yield_pressure),
+            adhesion=adhesion_of(work_of_adhesion=work_of_adhesion),
+        )
         said = input_warnings(contact, 1e-7)
         predicted = any("predicted to reach" in line for line in said)
         try:
@@ -130,7 +150,10 @@ def test_steep_surfaces():
 
 @pytest.mark.parametrize(("yield_pressure", "said"), [(750e3, "6.7e-06"), (750e9, "6.7")])
 def test_a_yield_pressure_that_no_such_body_has(yield_pressure, said):
-    lines = input_warnings(Contact(STEEL, smooth(GRID), yield_pressure), 1e-7)
+    lines = input_warnings(
+        Contact(STEEL, smooth(GRID), plasticity=ConstantBound(yield_pressure)),
+        1e-7,
+    )
     assert len(lines) == 1
     assert f"the yield pressure is {said} of the contact modulus" in lines[0]
 
@@ -248,7 +271,7 @@ def scan(height, **provenance):
 
 
 def test_the_edge_is_reached_on_a_grid_that_can_grow():
-    words = refusal(Contact(STEEL, smooth(COARSE), 750e6), 2e-6)
+    words = refusal(Contact(STEEL, smooth(COARSE), plasticity=ConstantBound(750e6)), 2e-6)
     assert re.search(
         r"; use a grid of about [\d.]+ um \(more grid\.nodes or a larger grid\.sp", words
     )

@@ -10,7 +10,7 @@ import xarray as xr
 
 import restitution as rs
 from restitution.case.case_file import parse_case
-from restitution.contact.stiffness import normal_stiffness
+from restitution.contact.prescribed.stiffness import normal_stiffness
 from restitution.errors import CaseError, DomainError, OutputError
 from restitution.pages.report import write_report
 from restitution.plots.periodic import periodic_figures

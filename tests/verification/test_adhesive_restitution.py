@@ -6,6 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from contact_keys import contact_of
 from restitution import (
     Body,
     Contact,
@@ -17,9 +18,12 @@ from restitution import (
     solve,
     unloading_path,
 )
-from restitution.contact.checks.resolution import ADHESIVE_NODES, adhesive_nodes
-from restitution.contact.detachment import tension_limit
-from restitution.contact.separation import separate, separation_of
+from restitution.case.models import adhesion_of, plasticity_of
+from restitution.contact.checks.resolution import adhesive_spacing, resolves_adhesion
+from restitution.contact.jkr.detachment import tension_limit
+from restitution.contact.jkr.limit import HertzianApproach, JKRLimit
+from restitution.contact.jkr.separation import separate, separation_of
+from restitution.contact.plasticity.bound import ConstantBound
 from restitution.theory import JKR
 from tolerance import approx
 
@@ -34,7 +38,7 @@ def square(depth, spacing, **options):
     w = options.get("work_of_adhesion", 0.0)
     drawn = float(JKR(R, E_STAR, w).contact_radius(depth)) if w else 0.0
     n = 2 * int(1.1 * max(grown, drawn) / spacing + 4) + 1
-    return Contact(PAIR, smooth(Grid((n, n), (spacing, spacing))), **options)
+    return contact_of(PAIR, smooth(Grid((n, n), (spacing, spacing))), **options)
 
 
 @pytest.mark.parametrize("depth", [2.3, 3.5, 5, 8])
@@ -102,9 +106,9 @@ def test_the_paper_does_not_resolve_its_adhesion(spacing, resolved):
         square(12e-9, spacing, yield_pressure=0.75e9, work_of_adhesion=0.09, approach="hertzian"),
         12e-9,
     )
-    assert (adhesive_nodes(state) >= ADHESIVE_NODES) is resolved
+    assert resolves_adhesion(state) is resolved
     a_c = float(JKR(R, E_STAR, 0.09).pull_off_radius)
-    assert adhesive_nodes(state) == approx(a_c / spacing, rel=1e-6)
+    assert adhesive_spacing(state) == approx(a_c / 4, rel=1e-6)
 
 
 def test_roughness_takes_the_effect_of_adhesion_away():
@@ -121,7 +125,12 @@ def test_roughness_takes_the_effect_of_adhesion_away():
             e = [
                 collide(
                     solve(
-                        Contact(PAIR, surface, 0.75e9, work_of_adhesion=w, approach="hertzian"),
+                        Contact(
+                            PAIR,
+                            surface,
+                            plasticity=ConstantBound(0.75e9),
+                            adhesion=JKRLimit(w, approach=HertzianApproach()),
+                        ),
                         depth,
                     ),
                     tolerance=0.01,
@@ -142,16 +151,16 @@ def test_no_adhesion_is_the_contact_without(approach, detachment, plasticity):
     surface = generate_surface(
         grid, kind="gaussian", rms=0.03e-6, correlation_length=1.5e-6, seed=2
     )
-    plain = solve(Contact(PAIR, surface, 1e9, plasticity), 60e-9)
+    plain = solve(
+        Contact(PAIR, surface, plasticity=plasticity_of(plasticity, 1e9)),
+        60e-9,
+    )
     named = solve(
         Contact(
             PAIR,
             surface,
-            1e9,
-            plasticity,
-            work_of_adhesion=0.0,
-            approach=approach,
-            detachment=detachment,
+            plasticity=plasticity_of(plasticity, 1e9),
+            adhesion=adhesion_of(work_of_adhesion=0.0, approach=approach, detachment=detachment),
         ),
         60e-9,
     )
@@ -211,7 +220,12 @@ def test_pressure_stays_between_the_tension_limit_and_the_yield_pressure(detachm
         surface = generate_surface(
             grid, kind="gaussian", rms=0.02e-6, correlation_length=1.5e-6, seed=7
         )
-    contact = Contact(PAIR, surface, 0.75e9, work_of_adhesion=0.09, detachment=detachment)
+    contact = Contact(
+        PAIR,
+        surface,
+        plasticity=ConstantBound(0.75e9),
+        adhesion=adhesion_of(work_of_adhesion=0.09, detachment=detachment),
+    )
     limit = tension_limit(E_STAR, 0.09, grid.spacing)
     state = solve(contact, 30e-9)
     assert state.pressure.max() == 0.75e9

@@ -13,6 +13,8 @@ from restitution import (
     step,
     unloading_path,
 )
+from restitution.case.models import plasticity_of
+from restitution.contact.plasticity.bound import ConstantBound
 from restitution.numerics.quadrature import integrate_curve
 from tolerance import approx
 
@@ -26,7 +28,7 @@ def contact(pair):
     surface = generate_surface(
         grid, kind="exponential", rms=0.05e-6, correlation_length=2e-6, seed=3
     )
-    return Contact(pair, surface, P_Y)
+    return Contact(pair, surface, plasticity=ConstantBound(P_Y))
 
 
 @pytest.fixture(scope="module")
@@ -57,7 +59,10 @@ def test_one_solve_is_a_hundred_steps(contact, state):
 
 @pytest.mark.parametrize("plasticity", ["equilibrium", "truncated"])
 def test_stepped_unloading_returns_the_stored_energy(pair, contact, plasticity):
-    deepest = solve(Contact(pair, contact.surface, P_Y, plasticity), DEPTH)
+    deepest = solve(
+        Contact(pair, contact.surface, plasticity=plasticity_of(plasticity, P_Y)),
+        DEPTH,
+    )
     path = list(unloading_path(deepest))
     work = -integrate_curve([s.indentation for s in path], [s.force for s in path])
     assert work == approx(deepest.stored_energy, rel=1e-3)
@@ -77,7 +82,7 @@ def test_unloading_and_reloading_meet_the_loading_curve(contact, state):
 
 def test_vanishing_yield_pressure_gives_the_bearing_area(pair, contact):
     """Nothing resists: the area is where the bodies overlap, and all of it yields."""
-    soft = Contact(pair, contact.surface, yield_pressure=1e3)
+    soft = Contact(pair, contact.surface, plasticity=ConstantBound(1e3))
     state = solve(soft, DEPTH)
     overlapping = np.count_nonzero(soft.gap < DEPTH)
     assert state.contact_nodes == approx(overlapping, rel=2e-3)

@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from restitution import Body, Contact, Grid, Pair, solve, step
-from restitution.contact import adhesion, loading
+from contact_keys import contact_of
+from restitution import Body, Grid, Pair, solve, step
+from restitution.contact import loading
 from restitution.contact.influence import half_space, inverse_half_space
+from restitution.contact.jkr import area as adhesion
 from restitution.numerics.convolution.operators import FreeConvolution
 from restitution.numerics.quadratic.minimise import BoundedQuadratic, minimise_quadratic
 from restitution.surfaces import generate_surface
@@ -23,7 +25,7 @@ def rough(seed, **options):
     grid = Grid((200, 184), (0.12e-6, 0.13e-6))
     rms = (20e-9, 60e-9)[seed % 2]
     surface = generate_surface(grid, kind="gaussian", rms=rms, correlation_length=1e-6, seed=seed)
-    return Contact(Pair(STEEL, STEEL), surface, **options)
+    return contact_of(Pair(STEEL, STEEL), surface, **options)
 
 
 def plain_pressure(contact, depth):
@@ -31,7 +33,7 @@ def plain_pressure(contact, depth):
     arguments = contact.grid.nodes, contact.grid.spacing, contact.pair.contact_modulus
     b = depth - contact.gap
     found = minimise_quadratic(
-        BoundedQuadratic(half_space(*arguments), b, 0.0, contact.yield_pressure),
+        BoundedQuadratic(half_space(*arguments), b, 0.0, contact.hardness),
         start=np.zeros_like(b),
         precondition=inverse_half_space(*arguments),
         tolerance=1e-9 * depth,

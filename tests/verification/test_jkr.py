@@ -10,9 +10,10 @@ from functools import cache
 import numpy as np
 import pytest
 
+from contact_keys import load
 from restitution import Body, Contact, Grid, Pair, Surface, solve
-from restitution.contact.loading import solve_without_work
-from restitution.contact.separation import separate, separation_of, unloading_curve
+from restitution.case.models import adhesion_of
+from restitution.contact.jkr.separation import separate, separation_of, unloading_curve
 from restitution.theory import JKR
 from tolerance import approx
 
@@ -39,7 +40,11 @@ def sphere(nodes, offset=(0, 0), approach="equilibrium", detachment="crack-closu
     x, y = grid.x[:, None], grid.y[None, :]
     shifted = (x - offset[0] * h) ** 2 + (y - offset[1] * h) ** 2
     surface = Surface((x * x + y * y - shifted) / (2 * PAIR.radius), grid, {"source": "shifted"})
-    contact = Contact(PAIR, surface, work_of_adhesion=W, approach=approach, detachment=detachment)
+    contact = Contact(
+        PAIR,
+        surface,
+        adhesion=adhesion_of(work_of_adhesion=W, approach=approach, detachment=detachment),
+    )
     return contact, float(shifted.min()) / (2 * PAIR.radius)
 
 
@@ -79,7 +84,7 @@ def test_the_break():
 @pytest.mark.parametrize("depth", [0.1, 0.6, 1.5, 3])
 def test_the_loading_branch(depth):
     contact, _ = sphere(16)
-    state = solve_without_work(contact, depth * BREAK, start=None, residual=1e-6)
+    state = load(contact, depth * BREAK, start=None, residual=1e-6)
     expected = float(SMOOTH.force(depth * BREAK))
     # One cell of contact radius is worth 0.18 F_c at the deepest; measured 0.011 to 0.040.
     assert state.force == approx(expected, abs=0.05 * F_C)
@@ -87,7 +92,7 @@ def test_the_loading_branch(depth):
 
 def test_the_jump_in():
     contact, _ = sphere(16)
-    state = solve_without_work(contact, 0.0, start=None, residual=1e-6)
+    state = load(contact, 0.0, start=None, residual=1e-6)
     assert state.force == approx(float(SMOOTH.jump_in_force), rel=0.05)
 
 

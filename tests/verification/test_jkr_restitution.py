@@ -8,6 +8,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from restitution import Body, Contact, Grid, Pair, Surface, collide, smooth, solve
+from restitution.contact.jkr.limit import JKRLimit
 
 W = 0.05
 STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25, density=7850.0)
@@ -56,7 +57,7 @@ def found_and_error(nodes, depth, apex):
         first_touch = float(gap.min())
         flat = (grid.x[:, None] ** 2 + grid.y**2) / (2 * R)
         surface = Surface(flat - gap, grid, {"source": "shifted"})
-    contact = Contact(PAIR, surface, work_of_adhesion=W)
+    contact = Contact(PAIR, surface, adhesion=JKRLimit(W))
     found = collide(solve(contact, depth - first_touch))
     return found, found.restitution - exact_restitution(depth)
 

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from restitution import Body, Contact, Grid, Pair, Surface, smooth, solve
-from restitution.contact.separation import separate, separation_of
+from restitution.case.models import adhesion_of
+from restitution.contact.jkr.limit import HertzianApproach, JKRLimit
+from restitution.contact.jkr.separation import separate, separation_of
 from restitution.theory import JKR, Kendall
 from tolerance import approx
 
@@ -39,7 +41,11 @@ def punch(nodes, offset=(0, 0), ratio=1, depth=1e-3):
 )
 def test_kendall(detachment, nodes, offset, ratio):
     pair, surface, radius = punch(nodes, offset, ratio)
-    contact = Contact(pair, surface, work_of_adhesion=W, approach="hertzian", detachment=detachment)
+    contact = Contact(
+        pair,
+        surface,
+        adhesion=adhesion_of(work_of_adhesion=W, approach="hertzian", detachment=detachment),
+    )
     path = list(separate(solve(contact, 1e-10), tolerance=0.01))
     expected = float(Kendall(pair.contact_modulus, W).pull_off_force(radius))
     assert separation_of(path).pull_off_force == approx(expected, rel=0.02)
@@ -59,7 +65,7 @@ def test_jkr_on_rectangular_cells(ratio):
         h = float(jkr.pull_off_radius) / 8
         hx, hy = h * math.sqrt(r), h / math.sqrt(r)
         grid = Grid((2 * int(reach / hx) + 1, 2 * int(reach / hy) + 1), (hx, hy))
-        contact = Contact(pair, smooth(grid), work_of_adhesion=w, approach="hertzian")
+        contact = Contact(pair, smooth(grid), adhesion=JKRLimit(w, approach=HertzianApproach()))
         state = solve(contact, depth)
         separation = separation_of(list(separate(state, tolerance=0.005)))
         found.append((separation.pull_off_force / F_c, separation.unloading_work / (F_c * depth)))

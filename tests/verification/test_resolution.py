@@ -5,6 +5,7 @@ import pytest
 
 from restitution import Body, Contact, Grid, Pair, collide, generate_surface, refine, solve
 from restitution.contact.checks.resolution import median_patch, resolves
+from restitution.contact.plasticity.bound import ConstantBound
 
 STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25)
 GRID = Grid((128, 128), (0.25e-6, 0.25e-6))
@@ -20,7 +21,14 @@ def curves():
         coarse = generate_surface(
             GRID, kind="gaussian", rms=0.1e-6, correlation_length=2e-6, seed=seed
         )
-        contacts = [Contact(Pair(STEEL, STEEL), refine(coarse, k), 750e6) for k in FACTORS]
+        contacts = [
+            Contact(
+                Pair(STEEL, STEEL),
+                refine(coarse, k),
+                plasticity=ConstantBound(750e6),
+            )
+            for k in FACTORS
+        ]
         finest = contacts[-1].gap[:: FACTORS[-1], :: FACTORS[-1]]
         for depth in DEPTHS:
             cases = []
@@ -61,6 +69,9 @@ def test_contacts_that_are_not_resolved_have_not(curves):
 
 def test_a_contact_of_one_node_is_never_resolved():
     coarse = generate_surface(GRID, kind="exponential", rms=0.1e-6, correlation_length=2e-6, seed=1)
-    state = solve(Contact(Pair(STEEL, STEEL), coarse, 750e6), 8e-9)
+    state = solve(
+        Contact(Pair(STEEL, STEEL), coarse, plasticity=ConstantBound(750e6)),
+        8e-9,
+    )
     assert state.contact_nodes < 20
     assert not resolves(median_patch(state.patch_sizes()))

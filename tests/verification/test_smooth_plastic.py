@@ -5,6 +5,8 @@ import math
 import pytest
 
 from restitution import Body, Contact, Grid, Pair, collide, smooth, solve
+from restitution.case.models import plasticity_of
+from restitution.contact.plasticity.bound import ConstantBound
 from restitution.theory import FirstYield, JacksonGreen, ThorntonNing
 from tolerance import approx
 
@@ -17,7 +19,11 @@ def at(pair, x, nodes_over_yield_radius, p_y=P_Y, plasticity="equilibrium"):
     depth_y = float(onset.indentation)
     h = math.sqrt(pair.radius * depth_y) / nodes_over_yield_radius
     n = 2 * int(1.2 * math.sqrt(2 * pair.radius * x * depth_y) / h) + 1
-    contact = Contact(pair, smooth(Grid((n, n), (h, h))), p_y, plasticity)
+    contact = Contact(
+        pair,
+        smooth(Grid((n, n), (h, h))),
+        plasticity=plasticity_of(plasticity, p_y),
+    )
     return solve(contact, x * depth_y), depth_y, float(onset.force)
 
 
@@ -92,6 +98,10 @@ def test_equilibrium_follows_finite_elements(ratio, omega):
     fit = JacksonGreen(pair.radius, pair.contact_modulus, strength, 0.25)
     depth = omega * float(fit.first_yield.indentation)
     h = math.sqrt(2 * pair.radius * depth) / 60
-    contact = Contact(pair, smooth(Grid((151, 151), (h, h))), 2.8 * strength)
+    contact = Contact(
+        pair,
+        smooth(Grid((151, 151), (h, h))),
+        plasticity=ConstantBound(2.8 * strength),
+    )
     force = float(fit.loading_force(depth))
     assert solve(contact, depth).force == approx(force, rel=0.09)

@@ -4,12 +4,20 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
 from restitution.case.materials import PoissonsRatio, Property, material
+from restitution.case.models import (
+    Adhesion,
+    Approach,
+    Detachment,
+    Plasticity,
+    plasticity_of,
+    require_cohesive,
+)
 from restitution.case.quantities import (
     LONGEST,
     Density,
@@ -20,16 +28,10 @@ from restitution.case.quantities import (
 )
 from restitution.case.schema import Table
 from restitution.contact.bodies import Body
-from restitution.contact.contact import (
-    EQUILIBRIUM_SEPARATION,
-    FULL_CONSTRAINT,
-    Adhesion,
-    Approach,
-    Plasticity,
-    Yields,
-    require_cohesive,
-)
-from restitution.contact.detachment import Detachment
+from restitution.contact.contact import Yields
+from restitution.contact.models import EQUILIBRIUM_SEPARATION
+from restitution.contact.models import Plasticity as PlasticityModel
+from restitution.contact.plasticity.cavity import FULL_CONSTRAINT
 from restitution.errors import CaseError, shown
 
 # Keys of a body that the materials library can supply, with their SI units.
@@ -133,8 +135,8 @@ def _pressure_or_rule(value: Any) -> float | YieldRule:
 class Yielding:
     """The yield model of a contact.
 
-    `source` says in words where the values come from. The other fields are arguments of `Contact`:
-    the name of the model, pressures in Pa, and the body that yields.
+    `source` says in words where the values come from. The other fields are the name of the model,
+    pressures in Pa, and the body that yields.
     """
 
     source: str
@@ -149,9 +151,12 @@ class Yielding:
         """Pressure of a fully plastic contact (Pa); inf for elastic bodies."""
         return min(self.yield_pressure, FULL_CONSTRAINT * self.yield_strength)
 
-    def arguments(self) -> dict[str, Any]:
-        """The arguments of `Contact` that define its yield model."""
-        return {key: value for key, value in asdict(self).items() if key != "source"}
+    @property
+    def model(self) -> PlasticityModel:
+        """The model as a value."""
+        return plasticity_of(
+            self.plasticity, self.yield_pressure, self.yield_strength, self.tangent_modulus
+        )
 
 
 class InterfaceTable(Table):

@@ -11,12 +11,14 @@ from pydantic import BeforeValidator, model_validator
 from restitution.case import needs
 from restitution.case.bodies import BodyTable, InterfaceTable, Yielding
 from restitution.case.materials import Property, with_library_adhesion, work_of_adhesion
+from restitution.case.models import Adhesion, adhesion_of
 from restitution.case.quantities import Force, Length, Pressure
 from restitution.case.roughness import GeneratedRoughness, MeasuredRoughness, Roughness
 from restitution.case.schema import GridTable, ImpactTable, Series, Table, UnloadingTable
 from restitution.contact.bodies import Pair
-from restitution.contact.cohesive import coarsest_spacing
-from restitution.contact.contact import Adhesion, Contact, smooth
+from restitution.contact.cohesive.law import Cohesive
+from restitution.contact.contact import Contact, smooth
+from restitution.contact.models import Adhesion as AdhesionModel
 from restitution.errors import CaseError, SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface, composite
@@ -307,17 +309,25 @@ class Case(Table):
     def contact_on(self, surface: Surface) -> Contact:
         """Make the unloaded contact on the given `surface`. Raises the same errors as `contact`."""
         self._require_memory(surface.grid)
-        interface = self.interface
+        yielding = self.yielding()
         return Contact(
             self.pair(),
             surface,
-            **self.yielding().arguments(),
-            work_of_adhesion=interface.adhesive_energy,
-            approach=interface.approach,
-            detachment=interface.detachment,
-            adhesion=self._adhesion_on(surface.grid),
-            equilibrium_separation=interface.equilibrium_separation,
+            plasticity=yielding.model,
+            adhesion=self.adhesion_on(surface.grid),
             periodic=self.periodic,
+            yields=yielding.yields,
+        )
+
+    def adhesion_on(self, grid: Grid) -> AdhesionModel | None:
+        """The model of adhesion on `grid`; None without adhesion."""
+        interface = self.interface
+        return adhesion_of(
+            self._adhesion_on(grid),
+            interface.adhesive_energy,
+            interface.approach,
+            interface.detachment,
+            interface.equilibrium_separation,
         )
 
     def _adhesion_on(self, grid: Grid) -> Adhesion:
@@ -333,7 +343,8 @@ class Case(Table):
         w, z0 = interface.adhesive_energy, interface.equilibrium_separation
         if w == 0 or (interface.needs_jkr and not self.periodic):
             return "jkr"
-        fine = self.periodic or max(grid.spacing) <= coarsest_spacing(self.pair(), w, z0)
+        needed = Cohesive(w, z0).coarsest_spacing(self.pair())
+        fine = self.periodic or max(grid.spacing) <= needed
         return "cohesive" if fine else "jkr"
 
     def _require_memory(self, grid: Grid) -> None:
@@ -356,10 +367,9 @@ class Case(Table):
 
     def run_bytes(self, grid: Grid) -> float:
         """Memory (bytes) of a run on `grid`."""
-        yielding = self.yielding()
-        plasticity = "none" if math.isinf(yielding.hardness) else yielding.plasticity
-        adhesion = self._adhesion_on(grid) if self.interface.adhesive_energy > 0 else "none"
-        run = needs.run_bytes(grid, plasticity=plasticity, adhesion=adhesion)
+        adhesion = self.adhesion_on(grid)
+        attraction = 0.0 if adhesion is None else adhesion.bytes_per_node
+        run = needs.run_bytes(grid, max(self.yielding().model.bytes_per_node, attraction))
         return run + self.maps_bytes(grid)
 
     @property

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from restitution.case.case import Case
-from restitution.contact.checks.resolution import expected_pull_off_error, predicted_radius
+from restitution.contact.checks.resolution import predicted_radius
 from restitution.contact.contact import Contact
 from restitution.theory import JKR, FirstYield, ThorntonNing
 
@@ -56,7 +56,7 @@ def derived_quantities(case: Case, contact: Contact) -> dict[str, float | None]:
         "reduced_radius_m": pair.radius,
         "contact_modulus_Pa": pair.contact_modulus,
         "reduced_mass_kg": mass,
-        "yield_strength_Pa": contact.yield_strength if contact.grows else None,
+        "yield_strength_Pa": getattr(contact.plasticity, "yield_strength", None),
         "yield_pressure_Pa": None if elastic else p_y,
         "yield_indentation_m": None if first is None else float(first.indentation),
         "yield_force_N": None if first is None else float(first.force),
@@ -78,6 +78,7 @@ def _of_period(contact: Contact) -> dict[str, float | None]:
     the nominal pressure.
     """
     elastic, (wide, long) = math.isinf(contact.hardness), contact.grid.size
+    adhesion = contact.adhesion
     return {
         "contact_modulus_Pa": contact.pair.contact_modulus,
         "yield_pressure_Pa": None if elastic else contact.hardness,
@@ -85,14 +86,15 @@ def _of_period(contact: Contact) -> dict[str, float | None]:
         "reduced_pressure_Pa": contact.pair.contact_modulus * contact.slope,
         "mean_gap_at_first_touch_m": float(contact.gap.mean()),
         "nominal_area_m2": wide * long,
-        **({"work_of_adhesion_J_per_m2": contact.work_of_adhesion} if contact.adhesive else {}),
+        **({} if adhesion is None else {"work_of_adhesion_J_per_m2": adhesion.work_of_adhesion}),
     }
 
 
 def _adhesion(case: Case, contact: Contact) -> dict[str, float | None]:
-    if not contact.adhesive:
+    adhesion = contact.adhesion
+    if adhesion is None:
         return {}
-    pair, w = contact.pair, contact.work_of_adhesion
+    pair, w = contact.pair, adhesion.work_of_adhesion
     smooth = JKR(pair.radius, pair.contact_modulus, w)
     a_c = float(smooth.pull_off_radius)
     return {
@@ -100,7 +102,7 @@ def _adhesion(case: Case, contact: Contact) -> dict[str, float | None]:
         "pull_off_force_smooth_N": float(smooth.pull_off_force),
         "pull_off_radius_m": a_c,
         "nodes_over_pull_off_radius": a_c / max(contact.grid.spacing),
-        "expected_pull_off_error": expected_pull_off_error(contact),
+        "expected_pull_off_error": adhesion.expected_pull_off_error(contact),
         "tabor_parameter": float(smooth.tabor_parameter(case.interface.equilibrium_separation)),
         "sticking_velocity_m_per_s": (
             None if pair.mass is None else float(smooth.sticking_velocity(pair.mass))

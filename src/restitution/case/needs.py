@@ -25,13 +25,6 @@ _DESCRIBED = 150.0  # `restitution surface`: autocorrelation, spectrum and HTML 
 
 _MAPS = 16.0  # per node and depth: a map of pressure and one of plastic displacement
 
-# Bytes per node for each model of plasticity and for each model of adhesion. A run has one model of
-# each, and needs the larger of the two values. Besides the arrays of the solver, a run with an
-# attraction of finite range ("cohesive") keeps some 100 states of unloading. The pressure and the
-# displacement of each state take 16 bytes per node.
-_PLASTICITY = {"none": 115.0, "equilibrium": 140.0, "expanding-cavity": 190.0, "truncated": 190.0}
-_ADHESION = {"none": 0.0, "jkr": 150.0, "cohesive": 1800.0}
-
 # A non-periodic surface is cut from a surface on an enlarged grid (`generate._enlarged`). The
 # number of nodes along each axis is at most doubled and then rounded up to a fast FFT length. The
 # enlarged grid therefore has at most about _ENLARGED times as many nodes as the surface.
@@ -52,12 +45,9 @@ def require(needed: float, grid: Grid) -> None:
     )
 
 
-def run_bytes(grid: Grid, *, plasticity: str, adhesion: str) -> float:
-    """Memory (bytes) of a run on `grid`. The surface need not exist yet.
-
-    `plasticity` and `adhesion` are names of models. "none" means elastic bodies, or no adhesion.
-    """
-    return _PROCESS + max(_PLASTICITY[plasticity], _ADHESION[adhesion]) * nodes_of(grid)
+def run_bytes(grid: Grid, per_node: float) -> float:
+    """Memory (bytes) of a run on `grid` whose models need `per_node` (bytes)."""
+    return _PROCESS + per_node * nodes_of(grid)
 
 
 def maps_bytes(grid: Grid, depths: int, *, yields: bool) -> float:

@@ -18,11 +18,11 @@ from pydantic import (
 
 from restitution.case.quantities import ImpactAngle, Length, Spin, Velocity
 from restitution.collision import UnloadingMethod
-from restitution.contact.separation import RESTITUTION_ERROR
+from restitution.contact.models import RESTITUTION_ERROR
 from restitution.errors import shown
 from restitution.numerics.grid import Grid
+from restitution.surfaces.refine import FACTORS
 
-FACTORS = (1, 2, 4, 8, 16, 32, 64)  # allowed refinement factors
 # Largest number of nodes of a grid. More nodes do not fit into the memory of common machines.
 MOST_NODES = 2**27
 MOST_STEPS = 10_000  # largest number of depths (states of loading) of a curve

@@ -89,7 +89,7 @@ class Bodies:
             E=pair.contact_modulus,
             m=pair.mass,
             p_y=yielding.hardness,
-            onset=pair.first_yield_pressure(yielding.yield_pressure, yielding.yield_strength),
+            onset=yielding.model.first_yield_pressure(pair),
             w=case.interface.adhesive_energy,
             wall=wall,
             equal=pair.first == pair.second and Y_1 == Y_2,

@@ -26,9 +26,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from restitution.contact.contact import Contact, whole_grid
-from restitution.contact.detachment import Mask
 from restitution.contact.influence import half_space, inverse_half_space, periodic_half_space
 from restitution.contact.state import Array, State
 from restitution.errors import DomainError, NotConvergedError
@@ -50,27 +50,29 @@ RESIDUAL = 1e-8
 MAX_ITERATIONS = 1000  # iterations after which a solve counts as not converged
 
 
+Mask = NDArray[np.bool_]
+
+
 @dataclass(frozen=True)
 class HeldNodes:
-    """Nodes that are held in contact and can carry tension.
+    """Nodes of the box that are held in contact and can carry tension.
 
-    `mask` marks the nodes, `tension` (Pa) is the largest tension allowed, and `first_guess` (Pa;
-    None means zero) is the initial pressure. `mask` and `first_guess` cover the box, that is, the
-    rectangular part of the grid on which the contact is solved.
+    `tension` (Pa) is the largest tension allowed, and `first_guess` the initial pressure (Pa; None
+    means zero). `estimate` accepts a gradient that the minimiser has only estimated.
     """
 
     mask: Mask
     tension: float
     first_guess: Array | None = None
+    estimate: bool = True
 
 
 @dataclass(frozen=True)
 class Solution:
-    """Result of a solve on a box; the arrays have the shape of the box.
+    """Result of a solve; the arrays have the shape of the box.
 
-    `overlap` is the overlap (m) of the surfaces before elastic deformation (see `_overlap`), `gap`
-    the gap (m) after deformation and `pressure` the pressure (Pa). `residual` is the residual that
-    the solve reached (dimensionless), and `convolutions` the number of convolutions that it took.
+    `overlap` is the overlap (m) of the surfaces before elastic deformation, `gap` the gap (m) after
+    deformation and `pressure` the pressure (Pa).
     """
 
     overlap: Array
@@ -78,6 +80,26 @@ class Solution:
     gap: Array
     residual: float
     convolutions: int
+
+
+def solve_nonadhesive(
+    contact: Contact,
+    indentation: float,
+    limit: Array | float,
+    residual: float,
+    history: State | None = None,
+) -> State:
+    """Solve the contact without adhesion.
+
+    The first guess is the solution on coarser grids. It is nearer to the result than the pressure
+    of an earlier state would be.
+    """
+    box = candidate_box(contact, indentation, history)
+    if box is None:
+        return separated_state(contact, indentation, history)
+    return solve_pressure(
+        contact, indentation, box, limit=limit, history=history, residual=residual
+    )
 
 
 def solve_pressure(
@@ -90,21 +112,16 @@ def solve_pressure(
     held: HeldNodes | None = None,
     residual: float = RESIDUAL,
 ) -> State:
-    """Solve for a pressure of at most `limit`, with the plastic displacement of `history`.
+    """Solve for a pressure of at most `limit` (Pa), with the plastic displacement of `history`.
 
-    `limit` (Pa) is a number or an array of the shape of the grid. `held` are the nodes that
-    adhesion holds in contact; None without adhesion. The lower bound of the pressure is
-    −`held.tension` at these nodes, and 0 at all others. `box`, the part of the grid that is solved,
-    must contain the `candidate_box` and all held nodes.
-
-    `residual` is the tolerance on the violation of the contact conditions. Without adhesion it is
-    relative to the largest overlap before deformation, with adhesion to `Contact.residual_length`.
-    Contact at the grid edge is not checked here. Raises `NotConvergedError`. Raises `DomainError`
-    if a periodic contact of elastic bodies is complete (has no gap left) at `indentation`.
+    The lower bound of the pressure is −`held.tension` at the held nodes, and 0 at all others. `box`
+    must contain the `candidate_box` and all held nodes. Contact at the grid edge is not checked
+    here. Raises `NotConvergedError`, and `DomainError` if a periodic contact of elastic bodies is
+    complete (has no gap left).
     """
     device, shape = current(), shape_of(box)
     b = _overlap(contact, indentation, box, history)
-    if contact.periodic and limit == math.inf and b.mean() >= 0:
+    if contact.periodic and np.ndim(limit) == 0 and limit == math.inf and b.mean() >= 0:
         raise DomainError(
             f"indentation: the contact is complete at {1e9 * (indentation - b.mean()):.6g} nm and "
             "at larger indentations (no gap is left); use a smaller indentation, or prescribe the "
@@ -114,7 +131,7 @@ def solve_pressure(
     operators = operators_of(contact)
     upper = device.put(np.ascontiguousarray(limit[box])) if isinstance(limit, np.ndarray) else limit
     if held is None:
-        found, convolutions = solve_multilevel(
+        minimum, convolutions = solve_multilevel(
             operators,
             device.put(b),
             upper,
@@ -125,7 +142,7 @@ def solve_pressure(
     else:
         K, inverse = operators(shape, 0)
         guess = held.first_guess
-        found = minimise_quadratic(
+        minimum = minimise_quadratic(
             BoundedQuadratic(
                 K,
                 device.put(b),
@@ -137,35 +154,31 @@ def solve_pressure(
             precondition=inverse,
             tolerance=residual * scale,
             max_iterations=MAX_ITERATIONS,
-            accept_estimated_gradient=contact.detachment == "crack-closure",
+            accept_estimated_gradient=held.estimate,
         )
         convolutions = K.count
-    require_converged(
-        found,
-        f"the solve at an indentation of {1e9 * indentation:.6g} nm",
-        residual,
-        found.residual / scale,
-    )
+    reached = minimum.residual / scale
+    require_converged(minimum, _solve_at(indentation), residual, reached)
     solution = Solution(
-        b,
-        device.get(found.point),
-        device.get(found.gradient),
-        found.residual / scale,
-        convolutions,
+        overlap=b,
+        pressure=device.get(minimum.point),
+        gap=device.get(minimum.gradient),
+        residual=reached,
+        convolutions=convolutions,
     )
     return build_state(contact, indentation, box, solution, limit=limit, history=history)
 
 
-def require_converged(found: Minimum, solve: str, residual: float, reached: float) -> None:
-    """Raise `NotConvergedError` if the solve that returned `found` did not converge.
+def _solve_at(indentation: float) -> str:
+    return f"the solve at an indentation of {1e9 * indentation:.6g} nm"
 
-    For the message, `solve` names this solve, `residual` is its tolerance, and `reached` is its
-    last residual.
-    """
-    if not found.converged:
+
+def require_converged(minimum: Minimum, solve: str, residual: float, reached: float) -> None:
+    """Raise `NotConvergedError` if `solve`, which returned `minimum`, did not converge."""
+    if not minimum.converged:
         raise NotConvergedError(
             f"{solve} stopped at a residual of {reached:.1e} (tolerance: {residual:.0e}) "
-            f"after {found.iterations} iterations; use another grid spacing or a smoother surface "
+            f"after {minimum.iterations} iterations; use another grid spacing or a smoother surface "
             "(in Python, the argument residual sets the tolerance)"
         )
 
@@ -173,12 +186,12 @@ def require_converged(found: Minimum, solve: str, residual: float, reached: floa
 def elastic_pressure(
     contact: Contact, indentation: float, residual: float
 ) -> tuple[Array, Box, int]:
-    """Estimate the pressure (Pa) between elastic bodies without adhesion.
+    """Estimate the pressure (Pa) between elastic bodies without adhesion, on a box.
 
     `residual` bounds the root mean square of the violation of the contact conditions, relative to
-    the largest overlap. The pressure is given on a box and is zero outside. Isolated contact
-    patches of a few nodes can be missing, because `solve_near_guess` does not check all nodes.
-    Returns the pressure, the box and the number of convolutions. Raises `NotConvergedError`.
+    the largest overlap. Isolated contact patches of a few nodes can be missing, because
+    `solve_near_guess` does not check all nodes. Returns the pressure, the box and the number of
+    convolutions. Raises `NotConvergedError`.
     """
     box = candidate_box(contact, indentation)
     if box is None:
@@ -186,30 +199,21 @@ def elastic_pressure(
     device = current()
     b = _overlap(contact, indentation, box)
     scale = _scale_of(contact, indentation, b)
-    found, window, convolutions = solve_near_guess(
+    minimum, window, convolutions = solve_near_guess(
         operators_of(contact),
         device.put(b),
         tolerance=residual * scale,
         max_iterations=MAX_ITERATIONS,
     )
-    require_converged(
-        found,
-        f"the solve at an indentation of {1e9 * indentation:.6g} nm",
-        residual,
-        found.residual / scale,
-    )
+    require_converged(minimum, _solve_at(indentation), residual, minimum.residual / scale)
     rows, columns = (
         slice(side.start + part.start, side.start + part.stop)
         for side, part in zip(box, window, strict=True)
     )
-    return device.get(found.point), (rows, columns), convolutions
+    return device.get(minimum.point), (rows, columns), convolutions
 
 
 def _overlap(contact: Contact, indentation: float, box: Box, history: State | None = None) -> Array:
-    """Overlap (m) of the surfaces on `box` before elastic deformation: indentation minus gap.
-
-    If `history` is given, its plastic displacement is subtracted, too.
-    """
     b: Array = indentation - contact.gap[box]
     if history is not None:
         b -= history.plastic_displacement[box]
@@ -218,7 +222,9 @@ def _overlap(contact: Contact, indentation: float, box: Box, history: State | No
 
 def _scale_of(contact: Contact, indentation: float, b: Array) -> float:
     """Length (m) by which residuals are divided; `b` is the overlap before deformation."""
-    return contact.residual_length(indentation) if contact.adhesive else float(b.max())
+    if contact.adhesion is None:
+        return float(b.max())
+    return contact.adhesion.residual_length(contact.pair, indentation)
 
 
 def operators_of(contact: Contact, make: Callable[..., Convolution] | None = None) -> Operators:
@@ -246,14 +252,13 @@ def build_state(
     limit: Array | float,
     history: State | None,
 ) -> State:
-    """Build the state of a `solution` on `box`.
+    """Build the state of a `solution`, whose gap is overwritten.
 
-    Where the pressure is at the limit, a negative deformed gap becomes plastic displacement. The
-    elastic displacement overwrites `solution.gap`. If `limit` is a number, the plastic work of this
-    step is added to that of `history`. If `limit` is an array, the module `loading` adds it later.
+    Where the pressure is at the limit, a negative deformed gap becomes plastic displacement. Under a
+    bound that grows, `Plasticity.work` adds the plastic work later.
     """
     pressure, gap = solution.pressure, solution.gap
-    plastic, work, adhesive_work, work_error = _past(contact, history)
+    plastic, work = _plastic(contact, history)
     upper = limit[box] if isinstance(limit, np.ndarray) else limit
     yielding = (pressure >= upper) & (gap < 0)
     if yielding.any():
@@ -261,30 +266,32 @@ def build_state(
             plastic = plastic.copy()
         lowered = plastic[box]
         np.subtract(lowered, gap, out=lowered, where=yielding)
-        if not isinstance(limit, np.ndarray):
-            work -= limit * float(np.sum(gap, where=yielding)) * contact.grid.cell_area
-    displacement = np.add(gap, solution.overlap, out=gap)
+        if not contact.plasticity.grows:
+            if isinstance(upper, np.ndarray):
+                dissipated = float(np.sum(upper * gap, where=yielding))
+            else:
+                dissipated = upper * float(np.sum(gap, where=yielding))
+            work -= dissipated * contact.grid.cell_area
     return State(
-        contact,
-        indentation,
-        box,
-        freeze(pressure),
-        freeze(displacement),
-        freeze(plastic),
-        limit,
-        work,
-        adhesive_work,
-        work_error,
-        solution.residual,
-        solution.convolutions,
+        contact=contact,
+        indentation=indentation,
+        box=box,
+        box_pressure=freeze(pressure),
+        box_displacement=freeze(np.add(gap, solution.overlap, out=gap)),
+        plastic_displacement=freeze(plastic),
+        bound=limit,
+        plastic_work=work,
+        adhesive_work=0.0 if history is None else history.adhesive_work,
+        work_error=0.0 if history is None else history.work_error,
+        residual=solution.residual,
+        convolutions=solution.convolutions,
     )
 
 
 def candidate_box(contact: Contact, indentation: float, history: State | None = None) -> Box | None:
-    """Return the bounding box of the nodes with a gap below `indentation`; None without such nodes.
+    """Box of all nodes with a gap below `indentation`, or the whole period; None without any.
 
-    Without adhesion, the box contains all nodes that can come into contact. For a periodic contact,
-    it is the whole grid.
+    Without adhesion, no other node can come into contact.
     """
     whole = region = whole_grid(contact)
     gap = contact.gap
@@ -302,31 +309,25 @@ def candidate_box(contact: Contact, indentation: float, history: State | None = 
 def separated_state(contact: Contact, indentation: float, history: State | None = None) -> State:
     """Build the state of bodies out of contact."""
     nothing = np.zeros((0, 0))
-    plastic, work, adhesive_work, work_error = _past(contact, history)
-    bound = contact.first_yield_pressure if history is None else history.bound
+    plastic, work = _plastic(contact, history)
     return State(
-        contact,
-        indentation,
-        NOWHERE,
-        nothing,
-        nothing,
-        freeze(plastic),
-        bound,
-        work,
-        adhesive_work,
-        work_error,
+        contact=contact,
+        indentation=indentation,
+        box=NOWHERE,
+        box_pressure=nothing,
+        box_displacement=nothing,
+        plastic_displacement=freeze(plastic),
+        bound=contact.first_yield_pressure if history is None else history.bound,
+        plastic_work=work,
+        adhesive_work=0.0 if history is None else history.adhesive_work,
+        work_error=0.0 if history is None else history.work_error,
         residual=0.0,
         convolutions=0,
     )
 
 
-def _past(contact: Contact, history: State | None) -> tuple[Array, float, float, float]:
-    """Plastic displacement, plastic work, adhesive work and work error of `history`, or zeros."""
+def _plastic(contact: Contact, history: State | None) -> tuple[Array, float]:
+    """Plastic displacement (m) and plastic work (J) of `history`, or zeros."""
     if history is None:
-        return np.zeros(contact.grid.nodes), 0.0, 0.0, 0.0
-    return (
-        history.plastic_displacement,
-        history.plastic_work,
-        history.adhesive_work,
-        history.work_error,
-    )
+        return np.zeros(contact.grid.nodes), 0.0
+    return history.plastic_displacement, history.plastic_work

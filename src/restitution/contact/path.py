@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 
-import numpy as np
-
 from restitution.arguments import typed
 from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import RESIDUAL
-from restitution.contact.loading import solve, step
-from restitution.contact.prescribed_force import solve_at_force
-from restitution.contact.prescribed_velocity import solve_at_velocity
-from restitution.contact.separation import RESTITUTION_ERROR, separate
+from restitution.contact.interface import interface_of
+from restitution.contact.loading import solve
+from restitution.contact.models import RESTITUTION_ERROR
+from restitution.contact.prescribed.force import solve_at_force
+from restitution.contact.prescribed.velocity import solve_at_velocity
 from restitution.contact.state import State
 from restitution.errors import CaseError
 
@@ -83,7 +82,7 @@ def unloading_path(
         state: State to unload.
         steps: Number of steps of a contact without adhesion.
         tolerance: Error of the coefficient of restitution (dimensionless) that the steps may cause.
-            It determines the number of steps with adhesion, see `contact.separation`.
+            It determines the number of steps with adhesion.
         residual: Tolerance on the violation of the contact conditions (dimensionless), as in
             `solve`; used only without adhesion.
         known: States of another unloading of the same contact, which began at a smaller
@@ -97,11 +96,6 @@ def unloading_path(
         NotConvergedError: A tolerance was not reached, or adhesive bodies did not separate.
         DomainError: The contact reaches the edge of the grid.
     """
-    if state.contact.adhesive:
-        yield from separate(state, tolerance=tolerance, known=known)
-        return
-    deepest, last = state.indentation, state.separation_indentation
-    yield state
-    for t in np.arange(1, steps + 1) / steps:
-        state = step(state, float(last + (deepest - last) * (1 - t) ** 2), residual=residual)
-        yield state
+    yield from interface_of(state.contact).unload(
+        state, steps=steps, tolerance=tolerance, residual=residual, known=known
+    )

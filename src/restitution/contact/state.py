@@ -1,8 +1,4 @@
-"""One state of a contact: a solve returns it, and the next step starts from it.
-
-States are immutable, and their arrays are read-only. Fields hold the solution; force, area,
-energies and maps are properties.
-"""
+"""One state of a contact: a solve returns it, and the next step starts from it."""
 
 from __future__ import annotations
 
@@ -20,13 +16,14 @@ from restitution.numerics.read_only import read_only
 
 Array = NDArray[np.float64]
 
+_EXCESS = (math.pi - 1 + math.log(2)) / 24  # of the area of a staircase edge, per face and cell
+
 
 @dataclass(frozen=True, eq=False)
 class State:
     """A contact in equilibrium at one indentation.
 
-    Arrays that other code could still modify are copied. States are compared and hashed by
-    identity; to compare values, compare the fields.
+    States are compared and hashed by identity; to compare values, compare the fields.
 
     Attributes:
         contact: The contact before loading.
@@ -43,16 +40,16 @@ class State:
         work_error: Error of plastic work and adhesive work together (J).
         residual: Largest violation of the contact conditions (dimensionless), relative to the
             largest overlap of the undeformed surfaces or, with adhesion, to
-            `Contact.residual_length`.
+            `Adhesion.residual_length`.
         convolutions: Number of convolutions computed in the solve.
         force_before_release: Force (N) just before nodes were released in this step of adhesive
             unloading; None after loading.
         balance: Indentation (m) and force (N) at which the energy release rate, averaged along the
-            edge of the previous contact area, equals the work of adhesion. None for a loaded state
-            and with `pohrt-popov`. Also None if the step released no nodes, or if no such
-            indentation was found.
+            edge of the previous contact area, equals the work of adhesion; None if unknown.
         is_first_loading: Whether the state was computed by loading the undeformed bodies, not by a
             step from another state (bool).
+        adhesive_loss: Energy dissipated so far by jumps between equilibria of an attraction of
+            finite range (J).
     """
 
     contact: Contact
@@ -70,6 +67,7 @@ class State:
     force_before_release: float | None = None
     balance: tuple[float, float] | None = None
     is_first_loading: bool = True
+    adhesive_loss: float = 0.0
 
     def __post_init__(self) -> None:
         for name in ("box_pressure", "box_displacement", "plastic_displacement", "bound"):
@@ -112,6 +110,21 @@ class State:
     def contact_area(self) -> float:
         """Real contact area (m²), the number of nodes in contact times the cell area."""
         return self.contact_nodes * self.contact.grid.cell_area
+
+    @property
+    def corrected_area(self) -> float:
+        """Real contact area of a periodic contact (m²), corrected for its staircase edge.
+
+        The whole cell of a node counts as contact, which adds a strip along the edge. Its area is
+        (π − 1 + ln 2)/24 times the length of the staircase edge times the spacing (Yastrebov,
+        Anciaux and Molinari 2017, Tribol. Int. 114, 161–171).
+        """
+        touching = reframe(self.box_touching, self.box, whole_grid(self.contact))
+        hx, hy = self.contact.grid.spacing
+        # A face of the staircase edge has the length hy and separates cells of the width hx, or the
+        # other way round. So length times spacing is hx hy for each face.
+        faces = sum(np.count_nonzero(touching != np.roll(touching, 1, axis)) for axis in (0, 1))
+        return self.contact_area - _EXCESS * int(faces) * hx * hy
 
     @property
     def relative_area(self) -> float:
@@ -195,12 +208,7 @@ class State:
 
 
 def _joined(labels: NDArray[np.int32], count: int) -> NDArray[np.int32]:
-    """Number the patches of a periodic contact, and return the patch number of each label.
-
-    Each of the labels 1 to `count` marks a set of contact nodes that are connected within the grid.
-    Labels that meet across opposite edges of the grid belong to the same patch. The patch numbers
-    begin at 0; the result has the shape (count,).
-    """
+    """Patch number (from 0) of each label (from 1); labels join across opposite edges."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 

@@ -9,8 +9,6 @@ from typing import Self
 import numpy as np
 
 from restitution.contact.checks.resolution import median_patch, resolves_contact
-from restitution.contact.cohesive import CohesiveState
-from restitution.contact.perimeter import corrected_area
 from restitution.contact.state import State
 from restitution.curve.columns import Array, Record, column
 
@@ -72,12 +70,12 @@ class PeriodicPoint(Record):
             nominal_pressure=state.nominal_pressure,
             force=state.force,
             relative_area=state.relative_area,
-            corrected_relative_area=corrected_area(state) / math.prod(state.contact.grid.size),
+            corrected_relative_area=state.corrected_area / math.prod(state.contact.grid.size),
             largest_pressure=float(state.box_pressure.max(initial=0.0)),
             stored_energy=state.stored_energy,
             plastic_work=state.plastic_work,
             adhesive_work=state.adhesive_work,
-            adhesive_loss=state.adhesive_loss if isinstance(state, CohesiveState) else 0.0,
+            adhesive_loss=state.adhesive_loss,
             loading_work=state.loading_work,
             stiffness=stiffness if math.isfinite(stiffness) else math.nan,
             contact_nodes=state.contact_nodes,

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Self
 
 from restitution.collision import Collision
-from restitution.contact.checks.pull_off import pull_off_error
+from restitution.contact.checks.model_error import model_error, pull_off_error
 from restitution.contact.checks.resolution import (
     NODES_PER_PATCH,
     adhesive_spacing,
@@ -15,7 +15,6 @@ from restitution.contact.checks.resolution import (
     resolves_adhesion,
     resolves_contact,
 )
-from restitution.contact.model_error import model_error
 from restitution.contact.state import State
 from restitution.curve.columns import Record, column, magnitude
 

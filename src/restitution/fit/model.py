@@ -24,7 +24,7 @@ from restitution.case.schema import UnloadingTable
 from restitution.collision import collide
 from restitution.contact.contact import Contact
 from restitution.contact.loading import solve
-from restitution.contact.prescribed_velocity import solve_at_velocity
+from restitution.contact.prescribed.velocity import solve_at_velocity
 from restitution.contact.state import State
 from restitution.curve.columns import array
 from restitution.curve.curve import Curve

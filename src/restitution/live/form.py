@@ -7,10 +7,9 @@ from typing import Any, get_args
 
 from restitution.case.bodies import FROM_LIBRARY
 from restitution.case.materials import Material, materials
+from restitution.case.models import Adhesion, Approach, Detachment, Plasticity
 from restitution.case.quantities import unit_factors
 from restitution.collision import UnloadingMethod
-from restitution.contact.contact import Adhesion, Approach, Plasticity
-from restitution.contact.detachment import Detachment
 from restitution.dem.export import CODES
 from restitution.display import quantity
 from restitution.surfaces.extend import Extension

@@ -24,8 +24,8 @@ from typing import IO, Any
 import numpy as np
 import xarray as xr
 
+from restitution.contact.jkr.unloading_curve import complete_curve
 from restitution.contact.state import State
-from restitution.contact.unloading_curve import complete_curve
 from restitution.curve.columns import Column, Record
 from restitution.curve.curve import Curve
 from restitution.curve.oblique import ObliquePoint

@@ -3,7 +3,7 @@
 The errors combine, in quadrature: the solver, the grid (difference from cells twice as large), the
 scatter between surfaces of the same kind, and the spread of library materials, all from the
 companion curves of the total error (`companions`). The pull-off force has in addition the error of
-`contact.checks.pull_off`.
+`contact.checks.model_error`.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import numpy as np
 
 from restitution.case.case import Case
 from restitution.collision import Collision, collide
-from restitution.contact.prescribed_velocity import solve_at_velocity
+from restitution.contact.prescribed.velocity import solve_at_velocity
 from restitution.curve.columns import Array, array
 from restitution.curve.curve import Curve
 from restitution.curve.point import Point

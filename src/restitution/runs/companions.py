@@ -21,9 +21,10 @@ from restitution.case.bodies import BodyTable, Yielding
 from restitution.case.case import Case
 from restitution.collision import UnloadingMethod
 from restitution.contact.bodies import Pair
-from restitution.contact.cohesive import COMPANION
 from restitution.contact.contact import Contact, smooth
+from restitution.contact.interface import interface_of
 from restitution.contact.loading import solve
+from restitution.contact.models import COMPANION
 from restitution.contact.state import State
 from restitution.curve.columns import Array
 from restitution.curve.follow import Load, Unloading, follow
@@ -81,8 +82,8 @@ def _failed(error: RestitutionError) -> bool:
 
 
 def _solve(contact: Contact, depth: float, start: State | None) -> State:
-    # Only the path of a cohesive contact is long enough to be worth continuing.
-    return solve(contact, depth, start=start if contact.cohesive else None)
+    # Only a loading path is long enough to be worth continuing.
+    return solve(contact, depth, start=start if interface_of(contact).follows_path else None)
 
 
 def half_interval(surfaces: int) -> float:
@@ -227,7 +228,7 @@ def coarser_contact(contact: Contact) -> Contact:
     coarser = coarsen(contact.surface)
     if contact.surface.provenance.get("source") == "smooth":
         coarser = smooth(coarser.grid)
-    if contact.cohesive:
+    if not interface_of(contact).resolves_range(replace(contact, surface=coarser)):
         coarser = replace(coarser, provenance={**coarser.provenance, COMPANION: True})
     return replace(contact, surface=coarser)
 

@@ -12,9 +12,9 @@ from restitution.collision import Collision
 from restitution.contact.checks.edge import needed_edges
 from restitution.contact.contact import Contact
 from restitution.contact.loading import solve
-from restitution.contact.prescribed_force import solve_at_force
-from restitution.contact.prescribed_pressure import solve_at_pressure
-from restitution.contact.prescribed_velocity import solve_at_velocity
+from restitution.contact.prescribed.force import solve_at_force
+from restitution.contact.prescribed.pressure import solve_at_pressure
+from restitution.contact.prescribed.velocity import solve_at_velocity
 from restitution.contact.state import State
 from restitution.curve.follow import Load, Unloading
 from restitution.runs.messages import naming_keys

@@ -12,8 +12,9 @@ from typing import Any
 from restitution.case.case import Case
 from restitution.case.derived import deepest_indentation, derived_quantities
 from restitution.case.roughness import MeasuredRoughness
+from restitution.contact.interface import interface_of
+from restitution.contact.prescribed.stiffness import normal_stiffness
 from restitution.contact.state import State
-from restitution.contact.stiffness import normal_stiffness
 from restitution.curve.follow import loaded
 from restitution.curve.periodic import Histogram, PeriodicPoint
 from restitution.errors import NotConvergedError
@@ -124,8 +125,8 @@ def _write_results(
         "depths_computed": len(points),
         "warnings": [*log.warnings, *unresolved(points)],
         "model": {
-            "plasticity": "none" if math.isinf(contact.hardness) else contact.plasticity,
-            "adhesion": contact.adhesion if contact.adhesive else "none",
+            "plasticity": contact.plasticity.label,
+            "adhesion": interface_of(contact).label,
             "half_space": "periodic, 2/(E* |q|), no mean displacement, FFT without padding",
             **asdict(contact.grid),
             "refine": case.grid.refine,

@@ -8,7 +8,6 @@ from bisect import bisect_left
 from pathlib import Path
 
 from restitution.case.case import Case
-from restitution.case.schema import FACTORS
 from restitution.contact.checks.resolution import (
     NODES_PER_PATCH,
     adhesive_spacing,
@@ -16,8 +15,9 @@ from restitution.contact.checks.resolution import (
     median_patch,
     resolves_adhesion,
 )
-from restitution.contact.cohesive import coarsest_spacing, needed_spacing, resolves_range
+from restitution.contact.cohesive.law import Cohesive
 from restitution.contact.contact import Contact
+from restitution.contact.interface import interface_of
 from restitution.contact.state import State
 from restitution.display import duration, quantity
 from restitution.errors import DomainError, NotConvergedError
@@ -27,7 +27,7 @@ from restitution.numerics.memory import available
 from restitution.runs.depths import load_to
 from restitution.runs.log import Say, ignore
 from restitution.runs.messages import no_range
-from restitution.surfaces.refine import divided
+from restitution.surfaces.refine import FACTORS, divided
 
 # Largest number of nodes of a grid that "auto" tries. Such a grid takes a few minutes and about
 # 2 GiB.
@@ -91,9 +91,10 @@ def least_refined(case: Case, folder: Path, warn: Say = ignore) -> Case:
         return case
     case = _with_affordable_adhesion(case, folder, warn)
     contact = case.refined(1).realisation(0).contact(folder)
-    times = divisions(max(contact.grid.spacing), needed_spacing(contact)) if contact.cohesive else 1
+    needed = interface_of(contact).coarsest_spacing(contact.pair)
+    times = divisions(max(contact.grid.spacing), needed) if math.isfinite(needed) else 1
     finer = divided(contact.grid, times)
-    if times == 1 or not _is_affordable(case, finer, needed_spacing(contact)):
+    if times == 1 or not _is_affordable(case, finer, needed):
         return case.refined(1)
     return case.refined(times)
 
@@ -104,11 +105,11 @@ def with_chosen_adhesion(case: Case, contact: Contact, warn: Say = ignore) -> Ca
     A case that states its model is returned unchanged. If the grid of `contact` is too coarse for
     the range of the attraction, `warn` is called.
     """
-    if not contact.adhesive or case.interface.adhesion is not None:
+    if contact.adhesion is None or case.interface.adhesion is not None:
         return case
     for line in no_range(contact):
         warn(line)
-    return _with_adhesion(case, contact.adhesion)
+    return _with_adhesion(case, contact.adhesion.label)
 
 
 class _Level:
@@ -120,9 +121,14 @@ class _Level:
         self._seconds = 0.0
 
     @property
+    def _range(self) -> float:
+        """Largest spacing (m) that resolves the range of the attraction."""
+        return interface_of(self.contact).coarsest_spacing(self.contact.pair)
+
+    @property
     def resolves_range(self) -> bool:
-        """Whether the cells resolve the range of a cohesive contact; true for other contacts."""
-        return not self.contact.cohesive or resolves_range(self.contact)
+        """Whether the cells resolve the range of the attraction."""
+        return interface_of(self.contact).resolves_range(self.contact)
 
     def resolves(self, depth: float) -> bool:
         """Whether the grid resolves the contact at `depth`, one of the depths of the case."""
@@ -137,7 +143,7 @@ class _Level:
         grid = divided(self.contact.grid, times)
         nx, ny = grid.nodes
         wide = f"the next grid would have {nx} x {ny} nodes"
-        if not self.contact.cohesive:
+        if not interface_of(self.contact).follows_path:
             return wide if nx * ny > MOST_NODES else ""
         near = [math.prod(shape_of(state.box)) for state in self._states.values() if state]
         if nx * ny > MOST_COHESIVE_NODES or times**2 * max(near, default=0) > MOST_SOLVED_NODES:
@@ -160,7 +166,7 @@ class _Level:
         states = [state for depth in depths if (state := self._states.get(depth)) is not None]
         reasons = []
         if not self.resolves_range or not all(map(resolves_adhesion, states)):
-            needed = min(map(adhesive_spacing, states), default=needed_spacing(self.contact))
+            needed = min(map(adhesive_spacing, states), default=self._range)
             reasons.append(f"adhesion needs {self._grid_of(needed)}")
         if self.resolves_range and (not states or not all(map(_has_patches, states))):
             reasons.append(
@@ -220,7 +226,7 @@ def _with_affordable_adhesion(case: Case, folder: Path, warn: Say) -> Case:
     grid = case.grid.grid() or case.refined(1).realisation(0).surface(folder).grid
     cohesive = _with_adhesion(case, "cohesive")
     z0 = interface.equilibrium_separation
-    needed = coarsest_spacing(case.pair(), interface.adhesive_energy, z0)
+    needed = Cohesive(interface.adhesive_energy, z0).coarsest_spacing(case.pair())
     if any(_is_affordable(cohesive, divided(grid, n), needed) for n in FACTORS):
         return cohesive
     jkr = _with_adhesion(case, "jkr")

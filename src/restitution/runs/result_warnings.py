@@ -38,16 +38,16 @@ def too_coarse_for_adhesion(
     factor = case.grid.factor
     unrefined = factor * max(grid.spacing)
     adhesive = [point for point in points if not math.isnan(point.adhesive_spacing)]
-    for found in unresolved_adhesion(
+    for finding in unresolved_adhesion(
         [point.indentation for point in adhesive],
         [unrefined / point.refine for point in adhesive],
         [point.adhesive_spacing for point in adhesive],
         unrefined,
     ):
-        nx, ny = (n * found["refine"] // factor for n in grid.nodes)
-        finer = max(1.0, found["spacing"] / found["needed"])
+        nx, ny = (n * finding.refine // factor for n in grid.nodes)
+        finer = max(1.0, finding.spacing / finding.needed)
         cost = duration(seconds * finer**_GROWTH)
-        yield f"{message(found)} ({nx} x {ny} nodes, about {cost})"
+        yield f"{message(finding)} ({nx} x {ny} nodes, about {cost})"
 
 
 def imprecise(points: Sequence[Point], case: Case) -> Iterator[str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
@@ -14,10 +13,11 @@ from restitution.case.case import Case
 from restitution.case.derived import deepest_indentation, derived_quantities
 from restitution.case.omissions import omissions
 from restitution.collision import Collision, collide
-from restitution.contact.cohesive import CohesiveState
-from restitution.contact.contact import FULL_CONSTRAINT, Contact
+from restitution.contact.contact import Contact
+from restitution.contact.interface import interface_of
+from restitution.contact.jkr.unloading_curve import unloading_curve
+from restitution.contact.plasticity.cavity import FULL_CONSTRAINT
 from restitution.contact.state import State
-from restitution.contact.unloading_curve import unloading_curve
 from restitution.curve.curve import largest
 from restitution.curve.follow import Impact, follow
 from restitution.errors import DomainError, NotConvergedError, RestitutionError
@@ -228,11 +228,7 @@ def _unbalance(state: State, end: State, work: float, lost: float) -> float:
     to the stored energy. `lost` is the energy (J) that adhesion dissipates between `state` and
     `end`.
     """
-    if isinstance(state, CohesiveState) and isinstance(end, CohesiveState):
-        released = state.potential_energy - end.potential_energy
-        released -= end.plastic_work - state.plastic_work
-        return (work + lost - released) / state.stored_energy
-    return (work + lost) / state.stored_energy - 1
+    return interface_of(state.contact).unbalance(state, end, work, lost)
 
 
 def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> dict[str, Any]:
@@ -245,8 +241,8 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> d
         "depths_computed": len(points),
         "warnings": [*run.warnings, *_result_warnings(case, contact, out, run)],
         "model": {
-            "plasticity": "none" if math.isinf(contact.hardness) else contact.plasticity,
-            **_adhesion_of(contact, case),
+            "plasticity": contact.plasticity.label,
+            **interface_of(contact).describe(case.unloading.method),
             "half_space": "free, Love cells, zero-padded FFT",
             **asdict(contact.grid),
             "refine": case.grid.refine,
@@ -256,7 +252,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> d
         "materials": _materials(case),
         "conventions": {
             **CONVENTIONS,
-            "yield_pressure": FULL_PRESSURE if contact.grows else YIELD_PRESSURE,
+            "yield_pressure": FULL_PRESSURE if contact.plasticity.grows else YIELD_PRESSURE,
         },
         "derived": derived_quantities(case, contact),
         "sticking": summary_of(run.sticking),
@@ -302,20 +298,3 @@ def _result_warnings(case: Case, contact: Contact, out: ResultsFolder, run: _Run
     yield from velocities_missed(points, case, run.prescribed)
     if not contact.adhesive:
         yield from unbalanced(run.unloading_checks)
-
-
-def _adhesion_of(contact: Contact, case: Case) -> dict[str, Any]:
-    if not contact.adhesive:
-        return {"adhesion": "none"}
-    if contact.cohesive:
-        return {
-            "adhesion": "Lennard-Jones between half-spaces, "
-            f"z0 = {1e9 * contact.equilibrium_separation:.4g} nm",
-            "unloading": case.unloading.method,
-        }
-    return {
-        "adhesion": "JKR limit",
-        "approach": contact.approach,
-        "detachment": contact.detachment,
-        "unloading": case.unloading.method,
-    }

@@ -40,7 +40,7 @@ def smooth_curve(
     `solve`.
     """
     pair = contact.pair
-    if contact.plasticity == "truncated" or contact.adhesive or not points:
+    if not contact.plasticity.bounds_solve or contact.adhesive or not points:
         return {}
     depths, onset = _depths(contact, points)
     hertz, elastic = Hertz(pair.radius, pair.contact_modulus), depths <= onset

@@ -9,6 +9,8 @@ from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.surfaces.surface import Array, Surface, is_periodic
 
+FACTORS = (1, 2, 4, 8, 16, 32, 64)  # factors of `grid.refine` in a case file
+
 
 @typed
 def refine(surface: Surface, factor: int) -> Surface:

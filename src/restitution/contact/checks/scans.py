@@ -5,9 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 
-from restitution.contact.checks.finding import Finding
-from restitution.surfaces import Surface, rms_slope
-from restitution.surfaces.defects import STEEP, Form, Spikes, form_of, spikes_of
+from restitution.contact.checks.findings import (
+    CurvedScan,
+    Finding,
+    ImpossibleSlope,
+    Spikes,
+    SteepSurface,
+    TiltedScan,
+)
+from restitution.surfaces import Surface, defects, rms_slope
+from restitution.surfaces.defects import STEEP, Form, form_of, spikes_of
 
 _TILTED = 0.5  # fraction of the variance of the heights that a plane explains
 # Fraction of the remaining variance that a sphere explains. On the edge of such a scan, the sphere
@@ -27,40 +34,25 @@ _Provenance = Mapping[str, str | float]
 
 
 def scan_findings(surface: Surface, reduced_radius: float = math.inf) -> list[Finding]:
-    """Find reasons to doubt the heights of `surface`, in contact with the reduced radius R* (m).
-
-    Each code is followed by the names of its values:
-
-    * `spikes`: `file`, `count`, largest `height` (m), and `threshold`, the number of standard
-      deviations beyond which pixels are replaced;
-    * `tilted-scan`: `file`, `explained`, the fraction of the height variance that a plane explains,
-      and whether the scan is `curved`, too;
-    * `curved-scan`: `file`, `explained`, the fraction of the remaining variance that a sphere
-      explains, `radius` of the sphere (m, negative for a hollow), and `reduced_radius` (m);
-    * `steep-surface`: rms `slope`, and its `limit`. It is left out if there are spikes.
-    """
-    found: dict[tuple[object, ...], Finding] = {}
+    """Find reasons to doubt the heights of `surface`, in contact with the reduced radius R* (m)."""
+    by_file: dict[tuple[object, ...], Finding] = {}
     for before in _scans(surface.provenance):
         for finding in _of_scan(surface, before, reduced_radius):
-            found.setdefault((finding.code, finding["file"]), finding)
-    findings = list(found.values())
+            by_file.setdefault((type(finding), finding.file), finding)
+    findings = list(by_file.values())
     slope = rms_slope(surface)
-    if slope > STEEP and not any(finding.code == "spikes" for finding in findings):
-        findings.append(Finding("steep-surface", {"slope": slope, "limit": STEEP}))
+    if slope > STEEP and not any(isinstance(finding, Spikes) for finding in findings):
+        findings.append(SteepSurface(slope, STEEP))
     return findings
 
 
-def too_steep(surface: Surface) -> Finding | None:
-    """Return `spikes` or `impossible-slope` if slopes are meaningless, otherwise None.
-
-    The values of `impossible-slope` are the rms `slope`, its `limit`, and the `file` of a scan or
-    "". Spikes are reported first, because they may be the reason.
-    """
+def too_steep(surface: Surface) -> Spikes | ImpossibleSlope | None:
+    """Return a finding if slopes are meaningless: spikes first, because they may be the reason."""
     if (slope := rms_slope(surface)) <= STEEPEST:
         return None
-    spikes = (each for each in scan_findings(surface) if each.code == "spikes")
-    values = {"slope": slope, "limit": STEEPEST, "file": surface.provenance.get("file", "")}
-    return next(spikes, None) or Finding("impossible-slope", values)
+    spikes = (finding for finding in scan_findings(surface) if isinstance(finding, Spikes))
+    file = str(surface.provenance.get("file", ""))
+    return next(spikes, None) or ImpossibleSlope(slope, STEEPEST, file)
 
 
 def _scans(provenance: _Provenance) -> list[str]:
@@ -71,23 +63,23 @@ def _scans(provenance: _Provenance) -> list[str]:
     return list(dict.fromkeys(key.removesuffix("source").removesuffix("levelling") for key in keys))
 
 
-def _of_scan(surface: Surface, before: str, reduced_radius: float) -> Iterator[Finding]:
+def _of_scan(
+    surface: Surface, before: str, reduced_radius: float
+) -> Iterator[Spikes | TiltedScan | CurvedScan]:
     provenance = surface.provenance
-    file = provenance.get(f"{before}file", provenance.get("file", "the surface"))
+    file = str(provenance.get(f"{before}file", provenance.get("file", "the surface")))
     steps = str(provenance.get(f"{before}levelling", "none")).split(", ")
     spikes = _spikes(surface, before)
     if spikes.count:
-        values = {"count": spikes.count, "height": spikes.height, "threshold": spikes.threshold}
-        yield Finding("spikes", {"file": file, **values})
+        yield Spikes(file, spikes.count, spikes.height, spikes.threshold)
     if "curvature" in steps:
         return
     form = _form(surface, before)
     curved = _is_curved(form, reduced_radius)
     if form.tilt > _TILTED and "tilt" not in steps:
-        yield Finding("tilted-scan", {"file": file, "explained": form.tilt, "curved": curved})
+        yield TiltedScan(file, form.tilt, curved)
     if curved:
-        values = {"explained": form.curvature, "radius": form.radius}
-        yield Finding("curved-scan", {"file": file, **values, "reduced_radius": reduced_radius})
+        yield CurvedScan(file, form.curvature, form.radius, reduced_radius)
 
 
 def _is_curved(form: Form, reduced_radius: float) -> bool:
@@ -106,11 +98,11 @@ def _form(surface: Surface, before: str) -> Form:
     return Form(float(tilt), float(curvature), float(radius))
 
 
-def _spikes(surface: Surface, before: str) -> Spikes:
+def _spikes(surface: Surface, before: str) -> defects.Spikes:
     """Spikes of the whole scan; of the surface if its provenance lacks them."""
     if (count := surface.provenance.get(f"{before}spikes")) is None:
         return spikes_of(surface)
     names = ("spike_height_m", "spike_threshold")
-    return Spikes(
+    return defects.Spikes(
         int(count), *(float(surface.provenance.get(f"{before}{name}", 0.0)) for name in names)
     )

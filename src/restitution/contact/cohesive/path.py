@@ -1,11 +1,9 @@
 """Paths of cohesive contacts: loading and unloading to separation, with the dissipated energy.
 
 In a step without instability the work of the force equals the change of the potential energy plus
-the plastic work. The work is therefore computed from energies, and the integral of the force only
-checks it. Where an equilibrium ceases to exist, the solve descends to another one. In this step the
-work of the force exceeds the change of energy, and the excess is the energy dissipated by adhesion.
-The uncertainty of this excess is half the jump of the force times the step. Steps across jumps are
-shortened until this uncertainty is small.
+the plastic work. Where the solve descends to another equilibrium, the excess of the work is the
+energy dissipated by adhesion. Its uncertainty is half the jump of the force times the step, so steps
+across jumps are shortened.
 """
 
 from __future__ import annotations
@@ -13,26 +11,27 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import cast
 
 import numpy as np
 
-from restitution.contact.cavity import bound_after, pressure_bound
 from restitution.contact.checks.edge import require_inside_grid
-from restitution.contact.cohesive import (
+from restitution.contact.cohesive.equilibrium import (
     CohesiveState,
     interacting_box,
     is_unique,
+    law_of,
     on_box,
-    require_fine_grid,
     rigid_start,
     solve_cohesive,
     with_interaction,
 )
 from restitution.contact.contact import Contact
-from restitution.contact.plastic_work import plastic_work
+from restitution.contact.models import Separation
 from restitution.contact.state import State
 from restitution.errors import NotConvergedError
 from restitution.numerics.box import reframe, shape_of, union
+from restitution.numerics.quadrature import integrate_curve
 
 # In a step without a jump, the work of the force must equal the change of energy. This is the
 # largest accepted difference, as a fraction of the reference energy `_scale`.
@@ -73,30 +72,26 @@ def load_cohesive(
 
     Raises `CaseError` if the grid is too coarse, and `NotConvergedError`.
     """
-    require_fine_grid(contact)
+    law_of(contact).require_fine_grid(contact)
     if (
         isinstance(start, CohesiveState)
         and start.is_first_loading
         and start.indentation <= indentation
     ):
-        return _move(start, indentation, residual, accuracy)
-    limit, convolutions = pressure_bound(contact, -math.inf, residual)
+        return move(start, indentation, residual, accuracy)
+    limit, convolutions = contact.plasticity.bound(contact, -math.inf, residual)
     begin = rigid_start(contact, limit=limit, residual=residual)
     convolutions += begin.convolutions
     if begin.indentation > indentation:
         return replace(begin, convolutions=convolutions)
-    end = _move(begin, indentation, residual, accuracy)
+    end = move(begin, indentation, residual, accuracy)
     return replace(end, convolutions=convolutions + end.convolutions)
 
 
-def _move(
+def move(
     state: CohesiveState, indentation: float, residual: float, accuracy: float = ACCURACY
 ) -> CohesiveState:
-    """Follow the path from `state` to `indentation`, and return the last state.
-
-    Its `convolutions` are those of all steps of this path. `residual` is the tolerance of each
-    solve, and `accuracy` the tolerance of the energy balance of a step (see `ACCURACY`).
-    """
+    """Follow the path to `indentation`; the `convolutions` of the last state are those of the path."""
     end, convolutions = state, 0
     for end in follow(state, indentation, residual=residual, accuracy=accuracy):
         convolutions += end.convolutions
@@ -105,16 +100,14 @@ def _move(
 
 def load_until(
     contact: Contact,
-    reached: Callable[[CohesiveState], bool],
+    reached: Callable[[State], bool],
     *,
     start: State | None,
     residual: float,
 ) -> tuple[CohesiveState, CohesiveState]:
-    """Load until `reached` is true.
+    """Return the last state of loading that is not `reached`, and the first state that is.
 
-    Returns the last state for which `reached` is false and the first state for which it is true. If
-    `reached` is already true for the state from which loading begins, both results are this state.
-    Loading begins from `start` or, if None, from bodies far apart.
+    If it is true at the beginning, both are this state.
     """
     begin = start.indentation if isinstance(start, CohesiveState) else -math.inf
     before = load_cohesive(contact, begin, start=start, residual=residual)
@@ -127,19 +120,10 @@ def load_until(
     raise NotConvergedError("the loading path has ended early")  # never: `follow` raises first
 
 
-def step_cohesive(state: CohesiveState, indentation: float, *, residual: float) -> CohesiveState:
-    """Move a deformed contact to another indentation, deeper or shallower."""
-    return replace(_move(state, indentation, residual), is_first_loading=False)
-
-
 def separate_cohesive(
     state: CohesiveState, *, accuracy: float = ACCURACY, known: Sequence[State] = ()
 ) -> Iterator[State]:
-    """Yield `state` and the states of unloading until the bodies attract each other only weakly.
-
-    In the last state the bodies are out of contact, and at this and larger distances no other
-    equilibrium exists. The rest of the separation is therefore reversible. Its work is minus the
-    potential energy of the last state.
+    """Yield `state` and the states of unloading until the rest of the separation is reversible.
 
     `known` are states of another unloading of the same contact, from a smaller indentation. If
     neither has yielded and both come to the same equilibrium, the states below it are taken from
@@ -166,7 +150,7 @@ def separate_cohesive(
 
 def _shared(state: CohesiveState, known: Sequence[State]) -> list[CohesiveState]:
     """The states of `known` in contact that unloading from `state` may pass through."""
-    path = [each for each in known if isinstance(each, CohesiveState)]
+    path = [cast(CohesiveState, earlier) for earlier in known]
     if not path or path[0].contact is not state.contact:
         return []
     if state.plastic_displacement.any() or path[-1].plastic_displacement.any():
@@ -178,11 +162,11 @@ def _is_same(state: CohesiveState, other: CohesiveState) -> bool:
     """Whether two states at one indentation are the same equilibrium."""
     box = union(state.box, other.box)
     assert box is not None
-    here, there = (reframe(each.box_displacement, each.box, box) for each in (state, other))
+    here, there = (reframe(one.box_displacement, one.box, box) for one in (state, other))
     inside = reframe(np.ones(shape_of(state.box), dtype=bool), state.box, box)
     inside &= reframe(np.ones(shape_of(other.box), dtype=bool), other.box, box)
     apart = float(np.abs(here - there)[inside].max(initial=0.0))
-    return apart <= _SAME * state.contact.equilibrium_separation
+    return apart <= _SAME * law_of(state.contact).equilibrium_separation
 
 
 def _continued(state: CohesiveState, path: Sequence[CohesiveState]) -> Iterator[CohesiveState]:
@@ -203,10 +187,9 @@ def _continued(state: CohesiveState, path: Sequence[CohesiveState]) -> Iterator[
 
 @dataclass(frozen=True)
 class _Step:
-    """A trial step: the state at its end, and its work and energy (J).
+    """A trial step: the state at its end, the work of the force by two rules, and energies (J).
 
-    `by_trapezium` and `by_parabola` are the work of the force, integrated by two rules. `change`
-    is the change of the potential energy plus the plastic work. `uncertainty` is the error of the
+    `change` is that of the potential energy plus the plastic work. `uncertainty` is the error of the
     work if the force has jumped in the step.
     """
 
@@ -225,8 +208,8 @@ def follow(
     If `target` is infinite, the caller must stop the iteration. Raises `NotConvergedError` if an
     equilibrium cannot be followed.
     """
-    contact = state.contact
-    z0 = contact.equilibrium_separation
+    law, pair = law_of(state.contact), state.contact.pair
+    z0 = law.equilibrium_separation
     sign = 1.0 if target > state.indentation else -1.0
     length = _FIRST_STEP * z0
     # If the bodies touch, the first step is at least 2 % of the indentation.
@@ -241,7 +224,7 @@ def follow(
             return
         if sign < 0 and state.force < 0 and state.smallest_gap < 1.2 * z0:
             # Do not step over the largest tension.
-            length = min(length, _UNDER_TENSION * (z0 + contact.adhesive_length))
+            length = min(length, _UNDER_TENSION * (z0 + law.length(pair)))
         last = length >= left * (1 - 1e-9)
         at = target if last else state.indentation + sign * min(length, 0.5 * left)
         length = abs(at - state.indentation)
@@ -279,7 +262,7 @@ def follow(
 
 
 def _accounted(state: CohesiveState, step: _Step, smooth: bool) -> CohesiveState:
-    """Return the state after an accepted `step`; add its losses and errors to those of `state`."""
+    """The state after an accepted `step`, with its losses and errors added to those of `state`."""
     lost = 0.0 if smooth else max(step.by_trapezium - step.change, 0.0)
     error = 0.0 if smooth else min(step.uncertainty, max(lost, abs(step.change)))
     unaccounted = state.unaccounted + (step.by_parabola - step.change if smooth else 0.0)
@@ -297,7 +280,7 @@ def _accounted(state: CohesiveState, step: _Step, smooth: bool) -> CohesiveState
 def _try(previous: CohesiveState | None, state: CohesiveState, at: float, residual: float) -> _Step:
     """Make a trial step to the indentation `at`, extrapolated from `previous` and `state`."""
     contact, box = state.contact, state.box
-    limit, convolutions = bound_after(state, at, residual)
+    limit, convolutions = contact.plasticity.bound_after(state, at, residual)
     p, u = state.box_pressure, state.box_displacement
     if previous is not None and previous.box == box:
         ratio = (at - state.indentation) / (state.indentation - previous.indentation)
@@ -305,11 +288,7 @@ def _try(previous: CohesiveState | None, state: CohesiveState, at: float, residu
             p = p + ratio * (p - previous.box_pressure)
             u = u + ratio * (u - previous.box_displacement)
     new = solve_cohesive(contact, at, box, p=p, u=u, limit=limit, history=state, residual=residual)
-    plastic, plastic_error = 0.0, 0.0
-    if isinstance(limit, np.ndarray):
-        plastic, plastic_error = plastic_work(state, new)
-    elif math.isfinite(limit):
-        plastic = limit * (new.plastic_volume - state.plastic_volume)
+    plastic, plastic_error = contact.plasticity.work(state, new)
     new = replace(
         new,
         plastic_work=state.plastic_work + plastic,
@@ -329,10 +308,7 @@ def _try(previous: CohesiveState | None, state: CohesiveState, at: float, residu
 
 
 def _parabola(previous: CohesiveState, state: CohesiveState, new: CohesiveState) -> float:
-    """Work (J) of the force from `state` to `new`.
-
-    The force is interpolated by the parabola through the forces of all three states.
-    """
+    """Work (J) of the force from `state` to `new`, by the parabola through all three forces."""
     a = state.indentation - previous.indentation
     b = new.indentation - state.indentation
     second = ((new.force - state.force) / b - (state.force - previous.force) / a) / (a + b)
@@ -350,8 +326,43 @@ def _on_wider_box(state: CohesiveState, at: float, residual: float) -> CohesiveS
     needed = interacting_box(state.contact, at, state)
     if union(state.box, needed) == state.box:
         return state
-    z0 = state.contact.equilibrium_separation
+    z0 = law_of(state.contact).equilibrium_separation
     wider = interacting_box(state.contact, at + (_WIDER - 1) * (max(at, 0.0) + 10 * z0), state)
     box = union(state.box, union(needed, wider))
     assert box is not None
     return on_box(state, box, residual=residual)
+
+
+def separation_of(path: list[State]) -> Separation:
+    """Compute the result of an unloading `path`, which ends with a reversible separation."""
+    start, end = cast(CohesiveState, path[0]), cast(CohesiveState, path[-1])
+    lost = end.adhesive_loss - start.adhesive_loss
+    plastic = end.plastic_work - start.plastic_work
+    work = start.potential_energy - lost - plastic
+    depth, force = ([getattr(state, key) for state in path] for key in ("indentation", "force"))
+    by_force = end.potential_energy - integrate_curve(depth, force)
+    steps = max(abs(end.work_error - start.work_error), abs(by_force - work))
+    last = max((k for k, state in enumerate(path) if state.contact_nodes), default=0)
+    return Separation(
+        unloading_work=work,
+        error=steps + law_of(start.contact).grid_loss(start.contact) * lost,
+        adhesive_loss=lost,
+        pull_off_force=_largest_tension(path),
+        separation_indentation=path[min(last + 1, len(path) - 1)].indentation,
+        convolutions=sum(state.convolutions for state in path[1:]),
+        steps=len(path) - 1,
+    )
+
+
+def _largest_tension(path: list[State]) -> float:
+    """Largest tension (N): the vertex of a parabola, or a force if it jumps there."""
+    force = np.array([state.force for state in path])
+    k = int(force.argmin())
+    largest = max(0.0, -float(force[k]))
+    around = path[k - 1 : k + 2]
+    if not 0 < k < len(path) - 1 or len({cast(CohesiveState, s).jumps for s in around}) > 1:
+        return largest
+    depth = np.array([state.indentation for state in around]) - path[k].indentation
+    scale = float(np.abs(depth).max())
+    a, b, c = np.polyfit(depth / scale, force[k - 1 : k + 2], 2)
+    return max(largest, float(b * b / (4 * a) - c)) if a > 0 else largest

@@ -1,10 +1,8 @@
 """Normal stiffness of a periodic contact: increase of the nominal pressure per approach.
 
 Without attraction, an additional approach of 1 lowers all nodes in contact by 1, and the pressure
-elsewhere stays zero. The additional pressure is thus the solution of a linear problem on the
-contact. As in `prescribed_pressure`, the bodies are put on an elastic foundation, so that the
-problem has a solution in complete contact, too. Finally, the compression of the foundation is
-subtracted. With attraction, the problem is Newton's equation at the equilibrium.
+elsewhere stays zero. As in `pressure`, the bodies are put on an elastic foundation. With
+attraction, the problem is Newton's equation at the equilibrium.
 """
 
 from __future__ import annotations
@@ -13,14 +11,13 @@ import math
 
 import numpy as np
 
-from restitution.contact.cohesive import CohesiveState, box_gap
-from restitution.contact.cohesive_law import stiffness as law_stiffness
 from restitution.contact.equilibrium import MAX_ITERATIONS, operators_of, require_converged
 from restitution.contact.influence import (
     foundation_compliance,
     periodic_half_space,
     sprung_half_space,
 )
+from restitution.contact.interface import interface_of
 from restitution.contact.state import Array, State
 from restitution.errors import CaseError, NotConvergedError
 from restitution.numerics.convolution.device import CPU, current, on_device
@@ -50,8 +47,8 @@ def normal_stiffness(state: State) -> float:
     """
     if not state.contact.periodic:
         raise CaseError("state: only a periodic contact has a stiffness per nominal area")
-    if isinstance(state, CohesiveState):
-        return _attracted(state)
+    if (stiffness := interface_of(state.contact).node_stiffness(state)) is not None:
+        return _attracted(state, stiffness)
     if not state.contact_nodes:
         return 0.0
     contact, grid, device = state.contact, state.contact.grid, current()
@@ -77,14 +74,12 @@ def normal_stiffness(state: State) -> float:
     return pressure / own if own > _COMPLETE else math.inf
 
 
-def _attracted(state: CohesiveState) -> float:
-    """Stiffness with attraction, from the displacement u per approach.
+def _attracted(state: State, k: Array) -> float:
+    """Stiffness with the stiffness `k` (Pa/m) of the attraction at each node.
 
-    It minimises ½ uᵀK⁻¹u + ½ Σ k (u − 1)², where k is the stiffness of the interface law at each
-    node.
+    The displacement u per approach minimises ½ uᵀK⁻¹u + ½ Σ k (u − 1)².
     """
     contact, grid = state.contact, state.contact.grid
-    k = law_stiffness(contact, contact.equilibrium_separation / box_gap(state))
 
     def potential(u: Array) -> tuple[Array, Array, Array]:
         return 0.5 * k * (u - 1) ** 2, k * (u - 1), k

@@ -1,53 +1,34 @@
-"""Detachment criteria: which nodes of an adhesive contact are released.
+"""Detachment criteria: which nodes of an adhesive contact in the JKR limit are released.
 
-Adhesion has no range here (the JKR limit): nodes in contact can carry tension, and other nodes do
-not attract. In the continuum, the contact edge recedes where the energy release rate G reaches the
-work of adhesion w. On a grid the edge is a staircase of nodes. Two local criteria are available:
+In the continuum, the contact edge recedes where the energy release rate G reaches the work of
+adhesion w. On a grid the edge is a staircase of nodes. G is computed for each face between a node in
+contact and a node outside, as ½ |p| times the opening
 
-`pohrt-popov`: a node is released if its tension exceeds the limit σ_c of a single node on the
-half-space (Pohrt and Popov 2015, Facta Universitatis 13, 3–10). The criterion is simple and
-independent of the order of release. However, nodes on a straight edge hold until G = 1.8 w and
-nodes at a kink until G = 1.0 w. The pull-off force is therefore too large: its relative error is
-1.5 times the ratio of cell size to contact radius.
+    opening = (u₊ − 2u₀ + u₋) + (h₀ − 2h₋ + h₋₋)
 
-`crack-closure`: the contact edge is a crack, and G is the work of closing the crack by one cell
-(Rybicki and Kanninen 1977, Eng. Fract. Mech. 9, 931–938). G is computed for each face between a
-node in contact and a node outside. The work per area is ½ |p| times the opening, with the pressure
-p of the node in contact. The relative error of G is 1e-3 on a straight edge. On a staircase, only
-the mean of G over the faces has this accuracy. G is therefore averaged along the edge over about
-five cells, but never across to another patch. The opening is the elastic displacement u of the node
-outside, minus the value that is extrapolated from the nodes in contact:
-
-    opening = (u₊ − 2u₀ + u₋) + (h₀ − 2h₋ + h₋₋).
-
-h is the gap before elastic displacement. Index 0 is the edge node, + the node outside, and − and −−
-are the next two nodes inside. The first bracket is the difference from a linear extrapolation of u.
-The second bracket corrects the extrapolation for the curvature of u, which in the contact is that
-of −h. The gap h of the node outside does not appear in the formula. An initial gap between surfaces
-that never touched is therefore not part of the opening.
-
-The limit σ_c of a rectangular cell with the edges hx and hy is given by σ_c² = 2πE*w hx hy/I. I is
-the integral of 1/r over all pairs of points of a cell, where r is the distance between the two
-points. For square cells of size hx, σ_c² is E*w/(κ hx), with
-κ = (2/3π)[1 − √2 + 3 ln(1 + √2)] = 0.473201.
+with the displacement u and the gap h before it. Index 0 is the edge node, + the node outside, and −
+and −− are the next two nodes inside. The second bracket corrects the linear extrapolation of u for
+its curvature in the contact, −h. A gap between surfaces that never touched is not part of it.
 """
 
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from restitution.arguments import typed
+from restitution.contact.state import State
 from restitution.numerics.expressions import diffuse
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Nodes = tuple[NDArray[np.intp], NDArray[np.intp]]
-Detachment = Literal["crack-closure", "pohrt-popov"]
 
 _FACES = np.array([(1, 0), (-1, 0), (0, 1), (0, -1)])
 _AROUND = np.array([(-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1), (0, 0)])
@@ -81,12 +62,116 @@ _SMOOTHED = 3  # standard deviation (cells) of the filter that smooths the outli
 # the difference may be an error of the solve.
 _TIE = 1e-3
 _TINY = float(np.finfo(float).tiny)
+_ACCURACY = 1e-3  # tolerance of solves between releases, as a fraction of the crack opening
+
+
+class Detachment(ABC):
+    """A criterion by which nodes are released, with the errors that it causes.
+
+    Attributes:
+        label: Name in case files and results.
+        by_energy: Whether the criterion is the energy release rate of the edge (bool).
+        pull_off_error: Relative error of the pull-off force of smooth spheres, times the nodes per
+            pull-off radius (docs/adhesion.md).
+        release_error: Error of the unloading work, as a fraction of the work of adhesion times the
+            contact area, that smaller steps do not reduce.
+        steps_of_tension: Smallest number of steps into which the pull-off displacement of a flat
+            punch is divided. The punch has the contact area of the present state.
+        small_error: If the error due to the steps is below this fraction of the surface energy, the
+            error due to the grid is larger, and finer steps are useless.
+        lateness: Error of the unloading work as a fraction of the work lost by late release. It is
+            1.5 times the largest value in a comparison with ten times finer steps.
+    """
+
+    label: ClassVar[str]
+    by_energy: ClassVar[bool]
+    pull_off_error: ClassVar[float]
+    release_error: ClassVar[float]
+    steps_of_tension: ClassVar[int]
+    small_error: ClassVar[float]
+    lateness: ClassVar[float]
+
+    def accuracy(self, opening: float, residual: float) -> float:
+        """Tolerance of solves that only decide which nodes are released.
+
+        `opening` is the relative residual of the crack opening.
+        """
+        return residual
+
+    @abstractmethod
+    def released(
+        self, state: State, gap: Array, held: Mask, work_of_adhesion: float, limit: float
+    ) -> Mask:
+        """Select held nodes to release; `limit` is the tension (Pa) of a single node."""
+
+
+@typed
+@dataclass(frozen=True)
+class CrackClosure(Detachment):
+    """Release nodes where the energy release rate of the edge exceeds the work of adhesion.
+
+    The relative error of G is 1e-3 on a straight edge. On a staircase, only its mean has this
+    accuracy; it is averaged over about five cells along the edge.
+
+    Source:
+        E. F. Rybicki, M. F. Kanninen, Eng. Fract. Mech. 9 (1977) 931–938.
+    """
+
+    label = "crack-closure"
+    by_energy = True
+    pull_off_error = 0.25
+    release_error = 0.015  # nodes detach at an energy release rate of 0.985 to 0.99 w
+    steps_of_tension = 32
+    small_error = 0.005
+    lateness = 0.15
+
+    def accuracy(self, opening: float, residual: float) -> float:
+        accuracy = _ACCURACY * opening
+        # A second solve at the end would hardly be more accurate.
+        return residual if accuracy < 2 * residual else accuracy
+
+    def released(
+        self, state: State, gap: Array, held: Mask, work_of_adhesion: float, limit: float
+    ) -> Mask:
+        pressure = state.box_pressure
+        edge = Edge.of(pressure, state.box_displacement, gap, held)
+        return released_by_closure(edge, pressure, work_of_adhesion, limit)
+
+
+@typed
+@dataclass(frozen=True)
+class PohrtPopov(Detachment):
+    """Release nodes whose tension exceeds the limit of a single node on the half-space.
+
+    Nodes on a straight edge hold until G = 1.8 w and nodes at a kink until G = 1.0 w, so the
+    pull-off force is too large.
+
+    Source:
+        R. Pohrt, V. L. Popov, Facta Universitatis 13 (2015) 3–10.
+    """
+
+    label = "pohrt-popov"
+    by_energy = False
+    pull_off_error = 1.5
+    release_error = 0.4  # nodes detach at 1.0 to 1.8 w, too large by 0 to 0.8 w
+    steps_of_tension = 16
+    small_error = 0.0
+    lateness = 0.5  # nodes are released in larger jumps than by `CrackClosure`
+
+    def released(
+        self, state: State, gap: Array, held: Mask, work_of_adhesion: float, limit: float
+    ) -> Mask:
+        return released_beyond(limit, state.box_pressure, held)
 
 
 def tension_limit(
     contact_modulus: float, work_of_adhesion: float, spacing: tuple[float, float]
 ) -> float:
-    """Tension σ_c of a single node (Pa) beyond which releasing the node lowers the energy."""
+    """Tension σ_c of a single node (Pa) beyond which releasing the node lowers the energy.
+
+    For a cell with the edges hx and hy, σ_c² = 2πE*w hx hy/I, where I is the integral of 1/r over
+    all pairs of points of the cell; for square cells, σ_c² = E*w/(0.473201 hx).
+    """
     hx, hy = spacing
     twice = 2 * (hx**2 * hy * math.asinh(hy / hx) + hx * hy**2 * math.asinh(hx / hy)) + 2 / 3 * (
         hx**3 + hy**3 - math.hypot(hx, hy) ** 3
@@ -95,19 +180,15 @@ def tension_limit(
 
 
 def released_beyond(limit: float, p: Array, touching: Mask) -> Mask:
-    """Select all nodes in contact whose tension exceeds `limit` (Pa): the rule of `pohrt-popov`."""
     return touching & (p < -limit)
 
 
 def released_by_closure(edge: Edge, p: Array, work_of_adhesion: float, limit: float) -> Mask:
-    """Select nodes to release by `crack-closure`, from the pressure `p` and the contact `edge`.
+    """Select nodes to release until the energy release rate falls to the work of adhesion.
 
-    Nodes are released until the energy release rate falls to the work of adhesion. `_recession`
-    estimates the distance by which each edge node must recede. The strip between the smoothed edge
-    of the contact and the receded edge has this distance as its width. All nodes under tension in
-    the strip are released. If the strip is narrow or has no nodes under tension, single nodes under
-    the largest tension are released instead. On coarse grids, nodes whose tension exceeds `limit`
-    (Pa) are also released.
+    All nodes under tension in the strip by which the edge must recede are released. If the strip is
+    narrow, single nodes under the largest tension are released instead. On coarse grids, nodes
+    whose tension exceeds `limit` (Pa) are also released.
     """
     tensile = edge.touching & (p < 0)
     fine = bool(np.count_nonzero(tensile) > _RESOLVED_RIM * edge.G.size)
@@ -125,13 +206,8 @@ def released_by_closure(edge: Edge, p: Array, work_of_adhesion: float, limit: fl
 def _recession(edge: Edge, tensile: Mask, work_of_adhesion: float, fine: bool) -> Array:
     """Distance (cells) by which each edge node must recede until G falls to the work of adhesion w.
 
-    At a fixed indentation, the square root of the energy release rate G falls linearly as the edge
-    recedes. In a smooth contact (JKR), receding by the small distance d reduces sqrt(G) by the
-    fraction d/(2t), where t is the width of the rim under tension. So d = 2t [1 − sqrt(w/G)].
-
-    The distance is zero at edge nodes without tension and at edge nodes with G ≤ w. If the grid is
-    `fine`, it is also zero on patches at rest (see `_AT_REST`). On coarser grids, w is multiplied
-    by `_LARGEST_ON_COARSE_GRIDS`. `tensile` marks the contact nodes under tension.
+    In a smooth contact (JKR), receding by the small distance d reduces sqrt(G) by the fraction
+    d/(2t), where t is the width of the rim under tension. So d = 2t [1 − sqrt(w/G)].
     """
     largest = (1.0 if fine else _LARGEST_ON_COARSE_GRIDS) * work_of_adhesion
     moves = (largest < edge.G) & tensile[edge.nodes]
@@ -146,8 +222,7 @@ def _recession(edge: Edge, tensile: Mask, work_of_adhesion: float, fine: bool) -
 class Edge:
     """The edge nodes of a contact (indices), and the energy release rate G (J/m²) at each of them.
 
-    G is averaged along the edge. `diffusion` contains the neighbours and the weights for this
-    average, see `_diffusion`.
+    G is averaged along the edge, with the neighbours and weights `diffusion`.
     """
 
     touching: Mask
@@ -172,11 +247,7 @@ class Edge:
         outwards = (_FACES @ np.array([row, 1]))[side]
 
         def values_at(values: Array, cells: int) -> Array:
-            """For each face of an edge node, return `values` at the node `cells` cells outwards.
-
-            A face is a side of the edge node's cell that has no contact beyond it. Outwards means
-            across this side; negative `cells` mean inwards.
-            """
+            """For each face of an edge node, `values` at the node `cells` cells outwards."""
             return np.asarray(np.take(values, here + cells * outwards, mode="clip"))
 
         opening = values_at(u, 1) - 2 * values_at(u, 0) + values_at(u, -1)
@@ -196,11 +267,7 @@ class Edge:
         return self._averaged(np.bincount(under, minlength=self.G.size))
 
     def strip(self, width: Array) -> Mask:
-        """Mask of the contact nodes at most `width` (cells) deep inside the smoothed outline.
-
-        `width` has one value for each edge node. A contact node uses the value of the nearest edge
-        node.
-        """
+        """Contact nodes at most the `width` (cells) of the nearest edge node inside the outline."""
         return self.touching & (self._depth <= width[self._nearest])
 
     def patch_mean(self, values: Array) -> Array:
@@ -210,7 +277,6 @@ class Edge:
         return np.asarray(means[patch])
 
     def _averaged(self, values: ArrayLike) -> Array:
-        """Average `values` of the edge nodes along the edge; return one average for each node."""
         sums = np.column_stack([values, np.ones(self.G.size)])
         diffuse(*self.diffusion, _SMOOTHING_STEPS, sums)
         return np.asarray(sums[:, 0] / sums[:, 1])
@@ -235,20 +301,18 @@ class Edge:
         """Position in `nodes` of the edge node nearest to each node of the box."""
         from scipy.ndimage import distance_transform_edt
 
-        beside = np.ones(self.touching.shape, dtype=bool)
-        beside[self.nodes] = False
-        number = np.zeros(beside.shape, dtype=np.intp)
+        off_edge = np.ones(self.touching.shape, dtype=bool)
+        off_edge[self.nodes] = False
+        number = np.zeros(off_edge.shape, dtype=np.intp)
         number[self.nodes] = np.arange(self.G.size)
-        nearest = distance_transform_edt(beside, return_distances=False, return_indices=True)
+        nearest = distance_transform_edt(off_edge, return_distances=False, return_indices=True)
         return np.asarray(number[tuple(nearest)])
 
 
 def _curvature(touching: Mask, nodes: Nodes, faces: NDArray[np.intp]) -> Array:
-    """For each edge node, the mean curvature (1/cell) of the outline of its patch, at most 0.35.
+    """For each edge node, the mean curvature 2π/perimeter (1/cell) of the outline of its patch.
 
-    The mean curvature is 2π divided by the perimeter of the patch. The perimeter is estimated as
-    π/4 times the number of faces between the patch and the nodes outside. The factor π/4 is the
-    average ratio of the length of a smooth outline to the length of its staircase.
+    The length of a smooth outline is on average π/4 times that of its staircase.
     """
     patch = _patch_numbers(touching, nodes)
     total = np.bincount(patch, weights=faces)[patch]
@@ -256,22 +320,17 @@ def _curvature(touching: Mask, nodes: Nodes, faces: NDArray[np.intp]) -> Array:
 
 
 def _patch_numbers(touching: Mask, nodes: Nodes) -> NDArray[np.intp]:
-    """For each edge node, the index of its contact patch.
-
-    Contact nodes are in the same patch if their cells are connected by sides or corners.
-    """
+    """For each edge node, the index of its patch; cells connect by sides or corners."""
     from scipy.ndimage import label
 
     return np.asarray(label(touching, structure=np.ones((3, 3)))[0][nodes])
 
 
 def _apart(nodes: Nodes, pressure: Array, recession: Array) -> NDArray[np.intp]:
-    """Select edge nodes to release singly, those under the largest tension first.
+    """Positions in `nodes` of edge nodes to release singly, under the largest tension first.
 
-    Where the edge must recede by a fraction r of a cell, one of every 1/r nodes is released. The
-    release of a node unloads its neighbours. So no other node within 0.5/r cells is released (this
-    distance is at least `_RELEASE_RADIUS` and at most `_LARGEST_RADIUS`). Ties are broken by index,
-    so that rounding does not decide. Returns the positions of the selected nodes in `nodes`.
+    Where the edge must recede by a fraction r of a cell, one of every 1/r nodes is released, because
+    a release unloads the neighbours. Ties are broken by index, so that rounding does not decide.
     """
     i, j = nodes
     rank = np.round(pressure / (_TIE * max(-float(pressure.min(initial=0.0)), _TINY)))
@@ -290,11 +349,10 @@ def _apart(nodes: Nodes, pressure: Array, recession: Array) -> NDArray[np.intp]:
 def _diffusion(
     i: NDArray[np.intp], j: NDArray[np.intp], shape: tuple[int, ...]
 ) -> tuple[NDArray[np.intp], Array]:
-    """Return the neighbours of each edge node and their weights in a diffusion step.
+    """Neighbours of each edge node and their weights in a diffusion step, shape (nodes, 9).
 
-    Both arrays have shape (nodes, 9). A step replaces the value at each edge node by a weighted
-    mean of the values at the node and its neighbours. The weights (Metropolis) conserve the sum of
-    the values over all edge nodes. A missing neighbour is replaced by the node itself.
+    The weights (Metropolis) conserve the sum of the values over all edge nodes. A missing neighbour
+    is replaced by the node itself.
     """
     here = np.arange(i.size)
     number = np.full((shape[0] + 2, shape[1] + 2), -1)

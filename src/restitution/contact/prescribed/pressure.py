@@ -29,10 +29,8 @@ PRESSURE_TOLERANCE = 1e-8
 def solve_at_pressure(contact: Contact, pressure: float, *, residual: float = RESIDUAL) -> State:
     """Load a periodic contact to a nominal pressure, within a relative error of 1e-8.
 
-    For the solve, the bodies are put on an elastic foundation, whose compression is proportional to
-    the mean pressure. Without the foundation, the indentation would not depend on the pressure in a
-    complete contact (no gap left). The foundation makes the problem positive definite even then.
-    Finally, the compression of the foundation is subtracted from the indentation.
+    For the solve, the bodies are put on an elastic foundation, which makes the problem positive
+    definite even in a complete contact. Its compression is subtracted from the indentation.
 
     Args:
         contact: Periodic contact to load.
@@ -57,40 +55,41 @@ def solve_at_pressure(contact: Contact, pressure: float, *, residual: float = RE
         )
     if not 0 < pressure < math.inf:
         raise CaseError(f"pressure: {pressure} Pa is not positive")
-    if pressure >= contact.yield_pressure:
+    limit = contact.hardness
+    if pressure >= limit:
         raise DomainError(
-            f"pressure: {pressure:.4g} Pa is not below the yield pressure, "
-            f"{contact.yield_pressure:.4g} Pa; use a smaller pressure"
+            f"pressure: {pressure:.4g} Pa is not below the yield pressure, {limit:.4g} Pa; use a "
+            "smaller pressure"
         )
     grid = contact.grid
     compliance = foundation_compliance(grid.nodes, grid.spacing, contact.pair.contact_modulus)
     device = current()
-    found = minimise_at_mean(
+    solved = minimise_at_mean(
         operators_of(contact, sprung_half_space),
         device.put(contact.gap),
-        contact.yield_pressure,
+        limit,
         MeanTarget(pressure, PRESSURE_TOLERANCE, compliance, residual),
         max_iterations=MAX_ITERATIONS,
     )
-    minimum = found.minimum
-    indentation = found.multiplier - compliance * float(minimum.point.mean())
+    minimum = solved.minimum
+    indentation = solved.multiplier - compliance * float(minimum.point.mean())
     if not minimum.converged:
         raise NotConvergedError(
             f"pressure: {pressure:.6g} Pa was not reached at a tolerance of {residual:.0e}; "
             "use another grid spacing or a smoother surface (in Python, also a larger residual)"
         )
     solution = Solution(
-        indentation - contact.gap,
-        device.get(minimum.point),
-        device.get(minimum.gradient),
-        minimum.residual / indentation,
-        found.products,
+        overlap=indentation - contact.gap,
+        pressure=device.get(minimum.point),
+        gap=device.get(minimum.gradient),
+        residual=minimum.residual / indentation,
+        convolutions=solved.products,
     )
     return build_state(
         contact,
         indentation,
         whole_grid(contact),
         solution,
-        limit=contact.yield_pressure,
+        limit=limit,
         history=None,
     )

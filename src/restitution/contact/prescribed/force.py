@@ -6,11 +6,10 @@ import math
 from dataclasses import replace
 
 from restitution.arguments import typed
-from restitution.contact.cohesive_path import load_until
 from restitution.contact.contact import Contact
-from restitution.contact.equilibrium import RESIDUAL
-from restitution.contact.loading import solve, solve_without_work
-from restitution.contact.prescribed_pressure import solve_at_pressure
+from restitution.contact.interface import interface_of
+from restitution.contact.loading import solve
+from restitution.contact.prescribed.pressure import solve_at_pressure
 from restitution.contact.state import State
 from restitution.errors import CaseError, DomainError, NotConvergedError
 from restitution.theory import Hertz
@@ -23,10 +22,8 @@ _SOLVE_RESIDUAL = 1e-10  # keeps the error of a solve well below the force toler
 def solve_at_force(contact: Contact, force: float, *, start: State | None = None) -> State:
     """Load the undeformed bodies to `force`, within a relative error of 1e-8.
 
-    The force increases with the indentation. A bracketing root finder therefore succeeds unless the
-    force jumps past `force`. With adhesion, each solve of the root finder starts from the previous
-    solve. A periodic contact is solved by `solve_at_pressure`, under the force divided by the area
-    of the grid.
+    A periodic contact is solved by `solve_at_pressure`, under the force divided by the area of the
+    grid.
 
     Args:
         contact: Contact to load.
@@ -55,6 +52,12 @@ def solve_at_force(contact: Contact, force: float, *, start: State | None = None
             f"force: {force:.4g} N is more than the whole grid carries at the yield pressure "
             f"({capacity:.4g} N); use a larger grid or a smaller force"
         )
+    interface = interface_of(contact)
+    hertz = float(Hertz(contact.pair.radius, contact.pair.contact_modulus).indentation(force))
+    low, high = 0.0, max(hertz, start.indentation if start is not None else 0.0)
+    path = interface.enclose(contact, lambda state: state.force >= force, start)
+    if path is not None:
+        start, (low, high) = path[0], (state.indentation for state in path)
     state = start
     convolutions = 0
 
@@ -62,18 +65,11 @@ def solve_at_force(contact: Contact, force: float, *, start: State | None = None
         nonlocal state, convolutions
         if indentation == 0:
             return -1.0
-        shallower = start if contact.cohesive else state
-        state = solve_without_work(contact, indentation, start=shallower, residual=_SOLVE_RESIDUAL)
+        shallower = state if path is None else start
+        state = interface.load(contact, indentation, start=shallower, residual=_SOLVE_RESIDUAL)
         convolutions += state.convolutions
         return state.force / force - 1
 
-    hertz = float(Hertz(contact.pair.radius, contact.pair.contact_modulus).indentation(force))
-    low, high = 0.0, max(hertz, start.indentation if start is not None else 0.0)
-    if contact.cohesive:  # the last two states of a loading path enclose the force
-        start, reached = load_until(
-            contact, lambda state: state.force >= force, start=start, residual=RESIDUAL
-        )
-        low, high = start.indentation, reached.indentation
     while excess(high) < 0:
         low, high = high, 1.5 * high
     indentation = brentq(excess, low, high, xtol=1e-12 * high, rtol=1e-12)

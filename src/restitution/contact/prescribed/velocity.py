@@ -7,13 +7,13 @@ from dataclasses import replace
 
 from restitution.arguments import typed
 from restitution.contact.checks.edge import require_inside_grid
-from restitution.contact.cohesive_path import load_until
 from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import RESIDUAL
-from restitution.contact.loading import solve_without_work, with_work, work_is_integrated
+from restitution.contact.interface import interface_of
+from restitution.contact.loading import with_work
 from restitution.contact.state import State
 from restitution.errors import CaseError, NotConvergedError
-from restitution.theory import JKR, Hertz
+from restitution.theory import Hertz
 
 VELOCITY_TOLERANCE = 1e-6
 # Relative tolerance on the velocity if the loading work is integrated. The relative error of the
@@ -27,11 +27,8 @@ _MOST_STEPS = 8  # largest number of Newton steps
 def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None = None) -> State:
     """Load the undeformed bodies until the loading work is ½ m* V².
 
-    m* is the reduced mass. If the work is known exactly, the relative error of the velocity is at
-    most 1e-6. If the work is integrated numerically, it has the error `State.work_error`. The
-    velocity computed from `State.loading_work` then agrees with V within 1e-4 or, where the work
-    jumps, within the relative error of the work. Where the work is positive, it increases with the
-    indentation. The search therefore succeeds unless the work jumps past ½ m* V².
+    m* is the reduced mass. The relative error of the velocity is at most 1e-6; if the work is
+    integrated numerically, 1e-4 or, where the work jumps, its relative error.
 
     Args:
         contact: Contact to load.
@@ -56,7 +53,8 @@ def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None 
     if not 0 < velocity < math.inf:
         raise CaseError(f"velocity: {velocity} m/s is not positive")
     work = 0.5 * mass * velocity**2
-    tolerance = _INTEGRATED_TOLERANCE if work_is_integrated(contact) else VELOCITY_TOLERANCE
+    integrated = interface_of(contact).integrates_work(contact)
+    tolerance = _INTEGRATED_TOLERANCE if integrated else VELOCITY_TOLERANCE
     search = _Search(contact, work, start)
     depth = search.depth(0.3 * tolerance)
     state = search.at(depth)
@@ -68,24 +66,24 @@ def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None 
             f"{miss:.1e}, at an indentation of {1e9 * depth:.6g} nm, because the work jumps there "
             "(too few nodes in contact); refine the grid or change the velocity"
         )
-    return replace(state, convolutions=sum(each.convolutions for each in search.found.values()))
+    return replace(
+        state, convolutions=sum(solved.convolutions for solved in search.states.values())
+    )
 
 
 class _Search:
     """The search for the indentation at which the loading work is `work` (J).
 
-    Newton's method is applied to ln W as a function of ln δ, with the loading work W and the
-    indentation δ. The slope is F δ/W with the force F, because dW/dδ = F. Two or three solves are
-    usually enough. Where the work jumps, Newton's method can fail; a bracketing root finder then
-    takes over.
+    Newton's method is applied to ln W as a function of ln δ, with the slope F δ/W. Where the work
+    jumps, it can fail; a bracketing root finder then takes over.
     """
 
     def __init__(self, contact: Contact, work: float, start: State | None) -> None:
         self._contact, self._work, self._start = contact, work, start
-        self.found: dict[float, State] = {}
+        self.states: dict[float, State] = {}
+        self._interface = interface_of(contact)
 
     def depth(self, tolerance: float) -> float:
-        """Find the depth (m) at which the velocity is reached within the relative `tolerance`."""
         depth: float | None = self.first_depth()
         for _ in range(_MOST_STEPS):
             if depth is None or self.miss(self.at(depth)) <= tolerance:
@@ -97,57 +95,44 @@ class _Search:
 
     def at(self, indentation: float) -> State:
         """Return the state at an indentation (m). A solve starts from the next shallower state."""
-        if indentation not in self.found:
-            shallower = (state for depth, state in self.found.items() if depth < indentation)
+        if indentation not in self.states:
+            shallower = (state for depth, state in self.states.items() if depth < indentation)
             guess = max(shallower, key=lambda state: state.indentation, default=self._start)
-            state = solve_without_work(self._contact, indentation, start=guess, residual=RESIDUAL)
-            self.found[indentation] = with_work(state, guess)
-        return self.found[indentation]
+            state = self._interface.load(self._contact, indentation, start=guess, residual=RESIDUAL)
+            self.states[indentation] = with_work(state, guess)
+        return self.states[indentation]
 
     def miss(self, state: State) -> float:
         """Relative difference of the velocity of `state` from the prescribed velocity."""
         return abs(math.sqrt(max(state.loading_work, 0.0) / self._work) - 1)
 
     def first_depth(self) -> float:
-        """Return a first guess (m) of the depth.
+        """First guess (m): the end of a loading path, a Newton step, or the depth of smooth bodies.
 
-        It is found by a Newton step from the start state. Without a start state, or if this step
-        fails, it is the depth of smooth bodies. A cohesive contact is instead loaded until the
-        prescribed work is exceeded. Later solves continue from the last state with less work, so
-        the loading path is not followed again.
+        Later solves continue from the last state of the path with less work.
         """
-        if self._contact.cohesive:
-            before, reached = load_until(
-                self._contact,
-                lambda state: state.loading_work >= self._work and state.force > 0,
-                start=self._start,
-                residual=RESIDUAL,
-            )
-            self.found[before.indentation] = before
-            return reached.indentation
+
+        def reached(state: State) -> bool:
+            return state.loading_work >= self._work and state.force > 0
+
+        contact = self._contact
+        if path := self._interface.enclose(contact, reached, self._start):
+            self.states[path[0].indentation] = path[0]
+            return path[1].indentation
         if self._start is not None and (depth := self._step(self._start)) is not None:
             return depth
-        contact = self._contact
         # Hertz's depth is only a first guess: yield and roughness make the contact deeper.
         smooth = Hertz(contact.pair.radius, contact.pair.contact_modulus)
-        depth = float(smooth.indentation_from_energy(self._work))
-        balanced = contact.approach == "equilibrium" and contact.detachment == "crack-closure"
-        if contact.adhesive and balanced:
-            return _adhesive_depth(contact, self._work, depth)
-        return depth
+        shallow = float(smooth.indentation_from_energy(self._work))
+        return self._interface.first_depth(contact, self._work, shallow)
 
     def newton(self, depth: float) -> float | None:
-        """Return the depth (m) after a Newton step from `depth`; None if it is outside the bracket.
-
-        The bracket extends from the deepest depth tried so far with too little work to the
-        shallowest one with too much work.
-        """
+        """Depth (m) after a Newton step from `depth`; None if it is outside the bracket."""
         following, low = self._step(self.at(depth)), self._deepest_below()
-        high = min((d for d, s in self.found.items() if self._excess(s) >= 0), default=math.inf)
+        high = min((d for d, s in self.states.items() if self._excess(s) >= 0), default=math.inf)
         return following if following is not None and low < following < high else None
 
     def bracketed(self, tolerance: float) -> float:
-        """Find the depth (m) with a bracketing root finder, within the relative `tolerance`."""
         from scipy.optimize import toms748
 
         low = self._deepest_below()
@@ -164,14 +149,10 @@ class _Search:
         return float(toms748(excess, low, high, xtol=tolerance * high, rtol=1e-12, k=1))
 
     def _deepest_below(self) -> float:
-        """Return the deepest depth (m) tried so far with too little work."""
-        return max((d for d, s in self.found.items() if self._excess(s) < 0), default=0.0)
+        return max((d for d, s in self.states.items() if self._excess(s) < 0), default=0.0)
 
     def _step(self, state: State) -> float | None:
-        """Return the depth (m) after a Newton step from `state`.
-
-        None if the force or the work of `state` is not positive.
-        """
+        """Depth (m) after a Newton step; None if force or work is not positive."""
         force, work = state.force, state.loading_work
         if not (force > 0 and work > 0):
             return None
@@ -179,23 +160,6 @@ class _Search:
         return state.indentation * math.exp(min(change, math.log(_MAX_GROWTH)))
 
     def _excess(self, state: State) -> float:
-        """Return a measure of how far the loading work of `state` is above the prescribed work.
-
-        The result is (W/W₀)^0.4 − 1 with the loading work W and the prescribed work W₀. W grows
-        with the indentation δ as δ² to δ^2.5, so the result is nearly linear in δ.
-        """
+        """(W/W₀)^0.4 − 1 with the loading work W and the prescribed W₀; nearly linear in depth."""
         work = state.loading_work
         return math.copysign((abs(work) / self._work) ** 0.4, work) - 1
-
-
-def _adhesive_depth(contact: Contact, work: float, shallow: float) -> float:
-    """Indentation (m) at which the loading work of smooth JKR bodies is `work` (J).
-
-    `shallow` is the indentation (m) without adhesion.
-    """
-    from scipy.optimize import brentq
-
-    pair = contact.pair
-    smooth = JKR(pair.radius, pair.contact_modulus, contact.work_of_adhesion)
-    deep = shallow + 10 * abs(float(smooth.break_indentation))
-    return float(brentq(lambda depth: float(smooth.loading_work(depth)) - work, shallow, deep))

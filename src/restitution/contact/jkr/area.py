@@ -10,29 +10,26 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from restitution.contact.checks.resolution import adhesive_nodes
+from restitution.contact.checks.resolution import radius_of_asperities
 from restitution.contact.contact import Contact
-from restitution.contact.detachment import (
-    Edge,
-    Mask,
-    released_beyond,
-    released_by_closure,
-    tension_limit,
-)
 from restitution.contact.equilibrium import (
     HeldNodes,
+    Mask,
     candidate_box,
     separated_state,
     solve_pressure,
 )
+from restitution.contact.jkr.detachment import Edge, tension_limit
 from restitution.contact.state import Array, State
 from restitution.numerics.box import Box, bounding_box, reframe, union, widen
 from restitution.theory import Kendall
 
-_ACCURACY = 1e-3  # tolerance of solves between releases, as a fraction of the crack opening
+if TYPE_CHECKING:
+    from restitution.contact.jkr.limit import JKRLimit
 
 # At the balance, the mean energy release rate G along the edge equals the work of adhesion (see the
 # top of this file). It is found by interpolation between the state before a retraction (position 0)
@@ -53,6 +50,10 @@ _RETREAT, _BALANCE_RESIDUAL = 0.05, 1e-5
 _FEW = 0.1
 
 
+def jkr_of(contact: Contact) -> JKRLimit:
+    return cast("JKRLimit", contact.adhesion)
+
+
 def release_nodes(
     contact: Contact,
     indentation: float,
@@ -66,13 +67,11 @@ def release_nodes(
 ) -> tuple[State, State]:
     """Hold nodes in contact, then release nodes as long as some meet the detachment criterion.
 
-    A held node stays in contact, even under tension, until it is released. `held` marks the nodes
-    that are held at first. `held` and `first_guess` (pressure in Pa) are arrays on `box`, a
-    rectangle of grid nodes.
-    `limit` (Pa) is the upper bound of the pressure. The plastic displacement of the earlier state
-    `history` is included in the gap. `residual` is the tolerance of the last solve. Returns the
-    state before the first release and the state after the last one.
+    `held` marks the nodes that are held at first, and `first_guess` is a pressure (Pa); both are
+    arrays on `box`. `residual` is the tolerance of the last solve. Returns the state before the
+    first release and the state after the last one.
     """
+    model = jkr_of(contact)
     grid, pair = contact.grid, contact.pair
     around = union(candidate_box(contact, indentation, history), bounding_box(held, box))
     if around is None:
@@ -85,19 +84,13 @@ def release_nodes(
     gap = contact.gap[around]
     if history is not None:
         gap = gap + history.plastic_displacement[around]
-    w = contact.work_of_adhesion
+    w = model.work_of_adhesion
     tension = tension_limit(pair.contact_modulus, w, grid.spacing)
     before_release: State | None = None
     convolutions = 0
     # A coarse tolerance is enough to decide which nodes are released. Only the last solve needs the
     # requested tolerance.
-    accuracy = residual
-    closure = contact.detachment == "crack-closure"
-    if closure:
-        opening = contact.crack_opening / contact.residual_length(indentation)
-        accuracy = _ACCURACY * opening
-        if accuracy < 2 * residual:
-            accuracy = residual  # a second solve at the end would hardly be more accurate
+    accuracy = model.detachment.accuracy(model.relative_opening(contact, indentation), residual)
     while True:
         # In the solve, the tension of a node is limited to `2 * tension`, because the solver is
         # faster with a limit than without one. Nodes under such a tension are released anyway, so
@@ -108,7 +101,7 @@ def release_nodes(
             around,
             limit=limit,
             history=history,
-            held=HeldNodes(held, 2 * tension, first_guess),
+            held=HeldNodes(held, 2 * tension, first_guess, model.detachment.by_energy),
             residual=accuracy,
         )
         convolutions += state.convolutions
@@ -117,11 +110,7 @@ def release_nodes(
         pressure = state.box_pressure
         # From now on, nodes that have come into compression are also held.
         held |= pressure > 0
-        if closure:
-            edge = Edge.of(pressure, state.box_displacement, gap, held)
-            released = released_by_closure(edge, pressure, w, tension)
-        else:
-            released = released_beyond(tension, pressure, held)
+        released = model.detachment.released(state, gap, held, w, tension)
         if not released.any():
             if accuracy == residual:
                 return before_release, state
@@ -144,14 +133,10 @@ def grow_contact(
 ) -> State:
     """Let the contact grow outwards from the nodes `held`, ring by ring, and return its state.
 
-    The bodies have not yielded before. The first ring is one cell wide. If nearly all nodes of a
-    ring stay in contact, the next ring is twice as wide. The contact stops growing when a further
-    ring of one cell no longer lowers the energy.
-
-    With the detachment criterion `pohrt-popov`, all rings are one cell wide. The contact then grows
-    as long as each ring adds contact nodes.
+    The bodies have not yielded before. The contact stops growing when a further ring of one cell no
+    longer lowers the energy or, with a criterion that is not `by_energy`, adds no contact nodes.
     """
-    closure = contact.detachment == "crack-closure"
+    by_energy = jkr_of(contact).detachment.by_energy
 
     def release(box: Box, held: Mask, first_guess: Array | None) -> State:
         return release_nodes(
@@ -163,7 +148,7 @@ def grow_contact(
     # At first touch no node carries pressure yet, but the neighbours of the held nodes may attach.
     # The first ring is then placed around the held nodes.
     touching = state.box_pressure != 0 if state.contact_nodes else reframe(held, box, state.box)
-    tried = closure and state.contact_nodes > 0
+    tried = by_energy and state.contact_nodes > 0
     cells = 1
     while True:
         around = widen(state.box, cells, contact.grid.nodes)
@@ -179,31 +164,25 @@ def grow_contact(
             continue
         ring = np.count_nonzero(grown) - state.contact_nodes
         lost = np.count_nonzero(grown) - wider.contact_nodes
-        cells = 2 * cells if closure and lost < _FEW * ring else 1
+        cells = 2 * cells if by_energy and lost < _FEW * ring else 1
         state, touching, held, box = wider, wider.box_pressure != 0, grown, around
-        tried = closure
+        tried = by_energy
     return replace(state, convolutions=convolutions)
 
 
 def _surrounded(touching: Mask, cells: int) -> Mask:
-    """Return the contact nodes `touching` together with a ring of nodes of width `cells`."""
+    """The nodes `touching` with a ring of nodes of width `cells`."""
     from scipy.ndimage import distance_transform_edt
 
     return np.asarray(distance_transform_edt(~touching) < cells + 0.5)
 
 
 def _is_better(wider: State, state: State) -> bool:
-    """Whether `wider` is preferred to `state`, both at the same indentation.
-
-    The wider contact is preferred if its energy (elastic energy minus work of adhesion times area)
-    is lower. Under the detachment criterion `pohrt-popov`, or if `state` has no contact nodes, the
-    wider contact is preferred if it has more contact nodes.
-    """
-    contact = state.contact
-    if contact.detachment == "pohrt-popov" or not state.contact_nodes:
+    model = jkr_of(state.contact)
+    if not model.detachment.by_energy or not state.contact_nodes:
         return wider.contact_nodes > state.contact_nodes
     gained = wider.contact_area - state.contact_area
-    return wider.stored_energy - state.stored_energy < contact.work_of_adhesion * gained
+    return wider.stored_energy - state.stored_energy < model.work_of_adhesion * gained
 
 
 def unload_adhesive(
@@ -211,11 +190,11 @@ def unload_adhesive(
 ) -> State:
     """Move an adhesive contact to a smaller `indentation` and release nodes there.
 
-    `first_guess` (Pa), the initial pressure, is an array on the box of `state`. The new state also
-    stores the force just before the first release. Up to this release, the contact area is fixed
-    and the force is linear in the indentation. The trapezoidal rule then gives the work exactly.
+    `first_guess` (Pa) is an array on the box of `state`. Up to the first release, the contact area
+    is fixed and the force is linear in the indentation, so the trapezoidal rule gives the work
+    exactly.
     """
-    before_release, settled = release_nodes(
+    before_release, new = release_nodes(
         state.contact,
         indentation,
         state.box,
@@ -225,13 +204,15 @@ def unload_adhesive(
         first_guess=state.box_pressure if first_guess is None else first_guess,
         residual=residual,
     )
-    lost = before_release.stored_energy - settled.stored_energy
+    lost = before_release.stored_energy - new.stored_energy
     balance = None
-    closure = state.contact.detachment == "crack-closure"
-    if closure and 0 < before_release.contact_nodes != settled.contact_nodes:
+    if (
+        jkr_of(state.contact).detachment.by_energy
+        and 0 < before_release.contact_nodes != new.contact_nodes
+    ):
         balance = _balance(state, before_release)
     return replace(
-        settled,
+        new,
         adhesive_work=state.adhesive_work - lost,
         force_before_release=before_release.force,
         balance=balance,
@@ -241,27 +222,27 @@ def unload_adhesive(
 
 def pull_off_of_punch(state: State) -> tuple[float, float]:
     """Pull-off displacement (m) and force (N) of a flat punch with the contact area of `state`."""
-    punch = Kendall(state.contact.pair.contact_modulus, state.contact.work_of_adhesion)
+    contact = state.contact
+    punch = Kendall(contact.pair.contact_modulus, jkr_of(contact).work_of_adhesion)
     a = math.sqrt(state.contact_area / math.pi)
     return float(punch.pull_off_displacement(a)), float(punch.pull_off_force(a))
 
 
 def balances_are_reliable(state: State) -> bool:
-    """Whether the result of `balance_of` can be used for `state`.
-
-    It can be used if the grid resolves the pull-off radius of an asperity (`_RESOLVED`) and the
-    detachment criterion is not `pohrt-popov`.
-    """
-    return state.contact.detachment != "pohrt-popov" and adhesive_nodes(state) >= _RESOLVED
+    """Whether the result of `balance_of` can be used for `state`."""
+    contact = state.contact
+    model = jkr_of(contact)
+    if not model.detachment.by_energy:
+        return False
+    radius = model.pull_off_radius(contact.pair, radius_of_asperities(state))
+    return radius / max(contact.grid.spacing) >= _RESOLVED
 
 
 def balance_of(state: State) -> tuple[float, float]:
-    """Return the balance of the contact area of a loaded `state`: indentation (m) and force (N).
+    """Balance of the contact area of a loaded `state`: indentation (m) and force (N).
 
-    At the balance, the energy release rate equals the work of adhesion. To find the balance, the
-    contact is solved once more with the same contact area but at a smaller indentation. The
-    decrease is a fraction of the pull-off displacement of a flat punch with this area. If no
-    balance exists, the values of `state` are returned.
+    The contact is solved once more with the same area at a smaller indentation. If no balance
+    exists, the values of `state` are returned.
     """
     contact = state.contact
     if state.contact_nodes == 0:
@@ -280,29 +261,25 @@ def balance_of(state: State) -> tuple[float, float]:
 
 
 def _balance(state: State, retracted: State) -> tuple[float, float] | None:
-    """Return the balance of the contact area of `state`: indentation (m) and force (N).
+    """Balance of the contact area of `state`: indentation (m) and force (N), or None.
 
-    At the balance, the mean of the energy release rate G along the edge equals the work of
-    adhesion. `retracted` has the same contact area at a smaller indentation. While the contact area
-    is fixed, sqrt(G) and the force are linear in the indentation. So `state` and `retracted`
-    determine the balance. Returns None if the mean of G does not increase from `state` to
-    `retracted`. Also returns None if G is below the fraction `_ACTIVE` of the work of adhesion at
-    all edge nodes.
+    `retracted` has the same contact area at a smaller indentation. While the area is fixed, sqrt(G)
+    and the force are linear in the indentation.
     """
-    contact = state.contact
+    contact, w = state.contact, jkr_of(state.contact).work_of_adhesion
     touching = state.box_pressure != 0
     rates = []
-    for each in (state, retracted):
-        gap = contact.gap[each.box] + state.plastic_displacement[each.box]
-        mask = reframe(touching, state.box, each.box)
-        rates.append(Edge.of(each.box_pressure, each.box_displacement, gap, mask).G)
-    active = np.maximum(*rates) > _ACTIVE * contact.work_of_adhesion
+    for solved in (state, retracted):
+        gap = contact.gap[solved.box] + state.plastic_displacement[solved.box]
+        mask = reframe(touching, state.box, solved.box)
+        rates.append(Edge.of(solved.box_pressure, solved.box_displacement, gap, mask).G)
+    active = np.maximum(*rates) > _ACTIVE * w
     if not active.any():
         return None
     first, last = (math.sqrt(max(float(G[active].mean()), 0.0)) for G in rates)
     if last <= first:
         return None
-    at_balance = (math.sqrt(contact.work_of_adhesion) - first) / (last - first)
+    at_balance = (math.sqrt(w) - first) / (last - first)
     part = min(max(at_balance, _EARLIEST), 1.0)
     return (
         state.indentation + part * (retracted.indentation - state.indentation),

@@ -1,9 +1,4 @@
-"""Curves of adhesive unloading (force against indentation), and a test for equal curves.
-
-The points of most curves are *balances* of contact areas. The balance of a contact area is the
-indentation and the force at which the energy release rate along its edge equals the work of
-adhesion (`contact.adhesion`).
-"""
+"""Curves of adhesive unloading (force against indentation), and a test for equal curves."""
 
 from __future__ import annotations
 
@@ -13,7 +8,7 @@ from itertools import dropwhile
 
 import numpy as np
 
-from restitution.contact.adhesion import balances_are_reliable
+from restitution.contact.jkr.area import balances_are_reliable
 from restitution.contact.state import Array, State
 from restitution.numerics.quadrature import integrate_curve
 
@@ -38,10 +33,8 @@ class UnloadingCurve:
     """Force (N) against decreasing indentation (m), shape (points,).
 
     If `balanced`, the first point is the state at which unloading begins, and the other points are
-    the balances of the contact areas (see the top of this file). When nodes are released, the force
-    jumps from state to state, but not from balance to balance. If not `balanced`, for example with
-    `pohrt-popov`, the points are all states. `fixed` means that the contact area is fixed between
-    the first two points, so that the force is linear between them.
+    the balances of the contact areas (see `area`); otherwise the points are all states. `fixed`
+    means that the contact area is fixed between the first two points, so that the force is linear.
     """
 
     indentation: Array
@@ -82,12 +75,10 @@ class UnloadingCurve:
 
 
 def unloading_curve(path: list[State]) -> UnloadingCurve:
-    """Return the curve of a `path` from `separate`.
+    """Return the curve of an unloading `path`.
 
-    Each contact area gives one point of the curve: the balance of this area (see the top of this
-    file). If the balance is unknown, or if the contact area has fewer than `_FEW_NODES` nodes, all
-    states with this area are used instead. All states of the path are used if no balance is known,
-    or if the grid is too coarse for reliable balances.
+    Each contact area gives its balance or, if this is unknown or unreliable, all states with this
+    area.
     """
     states = [(state.indentation, state.force) for state in path]
     balances = [state.balance for state in path[1:]]
@@ -101,8 +92,8 @@ def unloading_curve(path: list[State]) -> UnloadingCurve:
         same_area.append(states[k])
         if nodes[k + 1] == nodes[k]:
             continue
-        found = same_area if balance is None or nodes[k] < _FEW_NODES else [balance]
-        points += [point for point in found if point[0] < points[-1][0]]
+        of_area = same_area if balance is None or nodes[k] < _FEW_NODES else [balance]
+        points += [point for point in of_area if point[0] < points[-1][0]]
         fixed = len(points) > 1 if fixed is None else fixed
         same_area = []
     indentation, force = np.array(points).T
@@ -110,12 +101,9 @@ def unloading_curve(path: list[State]) -> UnloadingCurve:
 
 
 def complete_curve(path: Sequence[State]) -> list[tuple[float, float]]:
-    """Indentations (m) and forces (N) of a `path` from `separate`, including both of its ends.
+    """Indentations (m) and forces (N) of an unloading `path`, from its first state to zero force.
 
-    The first point is the state at which unloading begins, and the last one is the separation, with
-    zero force. Between them are the points of `unloading_curve`. Tensions above the pull-off force
-    are due to scatter and are replaced by the pull-off force. The work from these points agrees
-    with `UnloadingCurve.work` within the error of that work.
+    Tensions above the pull-off force are due to scatter and are replaced by the pull-off force.
     """
     curve, begin, end = unloading_curve(list(path)), path[0], path[-1]
     if not curve.balanced:
@@ -129,11 +117,7 @@ def complete_curve(path: Sequence[State]) -> list[tuple[float, float]]:
 
 
 def _smoothed(x: Array, F: Array) -> Array:
-    """Smooth `F`: replace each value by that of a parabola fitted to the nearest points.
-
-    Each result is limited to the range of the values at these points. If there are fewer than five
-    points, `F` is returned unchanged.
-    """
+    """Replace each value by that of a parabola through the nearest points, within their range."""
     window = min(_SMOOTHED, F.size)
     if window < 5:
         return F
@@ -149,23 +133,14 @@ def _smoothed(x: Array, F: Array) -> Array:
 
 @dataclass(frozen=True)
 class SharedUnloading:
-    """Known states of unloading from one depth, to be reused in unloading from a larger depth.
-
-    While an elastic contact unloads, its state depends only on the indentation, not on the depth at
-    which unloading began. Unloading from the larger depth therefore passes through the same states.
-    """
+    """Known states of an elastic unloading, to be reused in unloading from a larger depth."""
 
     states: Sequence[State]
     curve: UnloadingCurve
 
     @classmethod
     def of(cls, state: State, known: Sequence[State]) -> SharedUnloading | None:
-        """Prepare the `known` states of an unloading for reuse in the unloading from `state`.
-
-        Returns None if the states cannot be reused. They are reused only if both unloadings belong
-        to one contact in which no node has yielded, `known` ends at separation, and the balances of
-        both unloadings are reliable.
-        """
+        """Prepare the `known` states for reuse in the unloading from `state`; None if impossible."""
         if (
             not known
             or known[0].contact is not state.contact
@@ -188,25 +163,21 @@ class SharedUnloading:
         return abs(force - known) <= _SAME * max(self.curve.largest_tension(), abs(force))
 
     def below(self, state: State) -> Iterator[State]:
-        """Iterate over the known states at smaller indentations than `state`.
-
-        A constant is added to their adhesive work, so that the loading work has no step between
-        `state` and these states.
-        """
+        """Yield the known states at smaller indentations, with the adhesive work of `state`."""
         following = self._following(state)
         first = following[0]
         fallen = 0.5 * (state.force + first.force) * (state.indentation - first.indentation)
         # The work from `state` to the first known state is computed from the forces of these two
         # states. All later changes of the work are those of the known states.
         offset = first.loading_work - (state.loading_work - fallen)
-        for each in following:
+        for later in following:
             yield replace(
-                each,
-                adhesive_work=each.adhesive_work + offset,
+                later,
+                adhesive_work=later.adhesive_work + offset,
                 convolutions=0,
-                force_before_release=first.force if each is first else each.force_before_release,
+                force_before_release=first.force if later is first else later.force_before_release,
             )
 
     def _following(self, state: State) -> list[State]:
-        started = dropwhile(lambda each: each.balance is None, self.states)
-        return [each for each in started if each.indentation < state.indentation]
+        started = dropwhile(lambda known: known.balance is None, self.states)
+        return [known for known in started if known.indentation < state.indentation]

@@ -1,9 +1,8 @@
 """Work of adhesive loading, from the balances of a few contact areas or from the force.
 
-The force of a loaded state scatters, because its contact edge can move only by whole nodes. The
-*balance* of a contact area is the indentation and the force at which the energy release rate along
-its edge equals the work of adhesion (`contact.adhesion`). The force at balances does not scatter,
-so few depths suffice. If balances are not reliable, the force of the states is integrated.
+The force of a loaded state scatters, because its contact edge moves by whole nodes. The force at
+balances (see `area`) does not, so few depths suffice. If balances are not reliable, the force of the
+states is integrated.
 """
 
 from __future__ import annotations
@@ -12,8 +11,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from restitution.contact.adhesion import balance_of
 from restitution.contact.contact import Contact
+from restitution.contact.jkr.area import balance_of, jkr_of
 from restitution.contact.state import State
 from restitution.numerics.quadrature import integrate_adaptively
 
@@ -26,13 +25,6 @@ _CROWDING = 1.5
 # The error estimate is this factor times the change of the work when every second depth is left
 # out. The factor is above 1 because the force of rough contacts jumps.
 _MARGIN = 1.5
-# The computed work depends on the loading steps, because they influence which nodes attach. The
-# resulting error is estimated as a fraction of the work of adhesion times the contact area. The
-# fraction depends on `Contact.approach`. In validation contacts, the work was compared with the
-# work of loading in 240 steps. The two works differed by less than the estimated error in 93 % of
-# 29 contacts with `equilibrium`, and in all 11 contacts with `pull-increments`.
-_PINNING = {"equilibrium": 0.02, "pull-increments": 0.006, "hertzian": 0.0}
-
 # Largest number of bisections of the quadrature of `work_by_force`.
 _HALVINGS = 5
 
@@ -47,11 +39,8 @@ def work_by_balance(
 ) -> tuple[float, float, int]:
     """Return the loading work (J), the error of its quadrature (J) and the number of convolutions.
 
-    The contact is loaded to a few depths. At each depth, the indentation and the force at the
-    balance of the contact area are computed (see the top of this file). The force at these balances
-    is integrated over the indentation. The integral begins at the state `start` or, if None, at
-    first touch. `load` solves the contact at a depth (m), with a shallower state (or None) as its
-    initial guess. `tolerance` is relative to the work.
+    The force at the balances of a few depths is integrated from `start` (None: first touch). `load`
+    solves the contact at a depth (m), from a shallower state or None. `tolerance` is relative.
     """
     contact, last = state.contact, state.indentation
     first, work, convolutions = 0.0, 0.0, 0
@@ -69,13 +58,13 @@ def work_by_balance(
     error = 0.5 * abs(points[1.0][1] - points[0.0][1]) * (last - first)
     while error > tolerance * scale and parts < _MOST:
         parts = max(2 * parts, _FROM_TOUCH if start is None else _FROM_STATE)
-        found = begin
+        loaded = begin
         for k in range(1, parts):
             t = k / parts
             if t not in points:
-                found = load(contact, first + (last - first) * t**_CROWDING, found)
-                convolutions += found.convolutions
-                points[t] = balance_of(found)
+                loaded = load(contact, first + (last - first) * t**_CROWDING, loaded)
+                convolutions += loaded.convolutions
+                points[t] = balance_of(loaded)
         ordered = [points[t] for t in sorted(points)]
         value = _integral(ordered, first, last)
         error = _MARGIN * abs(value - _integral(ordered[::2], first, last))
@@ -90,8 +79,7 @@ def work_by_force(
 ) -> tuple[float, float, int]:
     """Integrate the force of loaded states, adaptively in the indentation.
 
-    Arguments and results are those of `work_by_balance`. Here `load` gets the previous state of the
-    quadrature as its initial guess, and the error includes the `pinning_error`.
+    Arguments and results are those of `work_by_balance`, but the error includes `pinning_error`.
     """
     contact, indentation = state.contact, state.indentation
     guess, convolutions = start, 0
@@ -106,26 +94,23 @@ def work_by_force(
     if start is not None:
         first, first_force = start.indentation, start.force
         work, error = start.loading_work, start.work_error - pinning_error(start)
-    elif contact.approach == "equilibrium":
+    elif jkr_of(contact).approach.in_equilibrium:
         first_force = force_at(0.0)  # the force right after the jump into contact
     scale = abs(work) + 0.5 * (abs(first_force) + abs(state.force)) * (indentation - first)
-    increment, its_error = integrate_adaptively(
+    increment, increment_error = integrate_adaptively(
         force_at, first, indentation, first_force, state.force, tolerance * scale, depth=_HALVINGS
     )
-    return work + increment, error + its_error + pinning_error(state), convolutions
+    return work + increment, error + increment_error + pinning_error(state), convolutions
 
 
 def pinning_error(state: State) -> float:
     """Error of the loading work (J) that arises because the grid pins the contact edge."""
-    contact = state.contact
-    return _PINNING[contact.approach] * contact.work_of_adhesion * state.contact_area
+    model = jkr_of(state.contact)
+    return model.approach.pinning * model.work_of_adhesion * state.contact_area
 
 
 def _integral(points: list[Point], first: float, last: float) -> float:
-    """Integral (J) of the force through `points` from `first` to `last` (m).
-
-    The force is a cubic spline, extrapolated linearly beyond the first and the last point.
-    """
+    """Integral (J) of a cubic spline through `points`, extrapolated linearly to the limits (m)."""
     from scipy.interpolate import CubicSpline
 
     x, F = np.array(points).T

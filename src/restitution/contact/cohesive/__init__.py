@@ -1,0 +1,1 @@
+"""Attraction of finite range: a traction at every node that depends on the gap."""

@@ -1,0 +1,292 @@
+"""Attractions of finite range: a traction at every node that depends on the gap."""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import cast
+
+import numpy as np
+
+from restitution.arguments import typed
+from restitution.contact.bodies import Pair
+from restitution.contact.checks.findings import Finding, RangeUnresolved
+from restitution.contact.checks.resolution import radius_of_asperities
+from restitution.contact.cohesive.equilibrium import CohesiveState, box_gap
+from restitution.contact.cohesive.path import (
+    load_cohesive,
+    load_until,
+    move,
+    separate_cohesive,
+    separation_of,
+)
+from restitution.contact.contact import Contact
+from restitution.contact.equilibrium import RESIDUAL
+from restitution.contact.models import (
+    COMPANION,
+    EQUILIBRIUM_SEPARATION,
+    Adhesion,
+    Separation,
+    set_field,
+)
+from restitution.contact.state import Array, State
+from restitution.errors import CaseError
+from restitution.numerics.quadrature import integrate_adaptively
+from restitution.theory import LennardJones
+
+# The grid spacing must not exceed this fraction of the length of the cohesive zone, E* z₀²/w, nor
+# of sqrt(R* z₀). On coarser grids the edge of the contact is pinned between nodes, which makes the
+# dissipated energy and the pull-off force wrong.
+COARSEST = 0.3
+# Cells up to this fraction of sqrt(r z0) at asperities of radius r change the pull-off force by at
+# most 1.5 % (docs/adhesion.md).
+_COARSEST_ON_ASPERITIES = 0.5
+# Tolerance of the energy balance of a step of unloading, as a fraction of the tolerance of COR.
+_UNACCOUNTED = 0.1
+# Relative error of the adhesive loss on the coarsest grid that is allowed (docs/adhesion.md).
+_GRID_LOSS = 0.05
+# Relative error of the pull-off force if the grid resolves the range of the attraction.
+_PULL_OFF = 0.01
+# The attraction of Lennard-Jones weakens most steeply at the gap z₀/_SOFTEST.
+_SOFTEST = (2 / 15) ** (1 / 6)
+_FAR = 100.0  # gap, in units of z₀, beyond which a law without closed forms does not attract
+_SAMPLES = 2000  # gaps at which the slope of such a law is sampled
+
+
+class CohesiveLaw(Adhesion):
+    """A traction law between the surfaces, as a function of their gap g.
+
+    A law defines `energy`, `traction`, `stiffness`, `gap_of_largest_traction` and the two fields of
+    `Adhesion`; the other methods follow from these. The traction must be 0 at the equilibrium
+    separation, and the repulsion must grow without bound as the gap decreases.
+    """
+
+    bytes_per_node = 1800.0  # some 100 states of unloading are kept, with 16 bytes per node each
+    follows_path = True
+
+    @abstractmethod
+    def energy(self, gap: Array) -> Array:
+        """Energy per area (J/m²): −w at the equilibrium separation, 0 at infinity."""
+
+    @abstractmethod
+    def traction(self, gap: Array) -> Array:
+        """Attractive traction (Pa), the derivative of the energy with respect to the gap."""
+
+    @abstractmethod
+    def stiffness(self, gap: Array) -> Array:
+        """Derivative of the traction with respect to the gap (Pa/m)."""
+
+    @property
+    @abstractmethod
+    def gap_of_largest_traction(self) -> float:
+        """Gap (m) at which the attraction is largest; nodes below are in contact."""
+
+    def potential(self, gap: Array) -> tuple[Array, Array, Array]:
+        """New arrays of energy, traction and stiffness."""
+        return self.energy(gap), self.traction(gap), self.stiffness(gap)
+
+    def gap_at(self, pressure: Array) -> Array:
+        """Gap (m) at which the pressure (Pa, not negative) of the law has this value."""
+        high = np.full(np.shape(pressure), self.equilibrium_separation)
+        reach = np.full_like(high, self.equilibrium_separation)
+        while (short := -self.traction(high - reach) < pressure).any():
+            reach = np.where(short, 2 * reach, reach)
+        low = high - reach
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            stronger = -self.traction(middle) > pressure
+            low, high = np.where(stronger, middle, low), np.where(stronger, high, middle)
+        return high
+
+    def largest_softening(self, smallest_gap: float) -> float:
+        """Largest rate (Pa/m) at which the attraction weakens beyond `smallest_gap` (m)."""
+        gaps = np.linspace(smallest_gap, _FAR * self.equilibrium_separation, _SAMPLES)
+        return max(0.0, -float(self.stiffness(gaps).min()))
+
+    def rigid_sphere_force(self, gap: float, radius: float) -> float:
+        """Normal force (N) between rigid spheres with the smallest gap `gap` (m)."""
+        return 2 * math.pi * radius * float(self.energy(np.asarray(gap)))
+
+    def rigid_sphere_energy(self, gap: float, radius: float) -> float:
+        """Energy (J) between rigid spheres with the smallest gap `gap` (m)."""
+        far = _FAR * self.equilibrium_separation
+        if gap >= far:
+            return 0.0
+        at, end = (self.rigid_sphere_force(g, radius) for g in (gap, far))
+        tolerance = 1e-6 * radius * self.work_of_adhesion * self.equilibrium_separation
+        force = lambda g: self.rigid_sphere_force(g, radius)  # noqa: E731
+        return integrate_adaptively(force, gap, far, at, end, tolerance, panels=8)[0]
+
+    def describe(self, unloading: str) -> dict[str, str]:
+        return {"adhesion": self.label, "unloading": unloading}
+
+    def check(self, contact: Contact) -> None:
+        if not contact.plasticity.bounds_solve:
+            raise CaseError(
+                f'plasticity: "{contact.plasticity.label}" is not defined with an attraction of '
+                "finite range; use ConstantBound, or JKRLimit as adhesion"
+            )
+
+    def load(
+        self, contact: Contact, indentation: float, *, start: State | None, residual: float
+    ) -> State:
+        return load_cohesive(contact, indentation, start=start, residual=residual)
+
+    def with_work(self, state: State, start: State | None) -> State:
+        return state  # the path to the state has counted its work
+
+    def integrates_work(self, contact: Contact) -> bool:
+        return True
+
+    def step(self, state: State, indentation: float, residual: float) -> State:
+        return move(cast(CohesiveState, state), indentation, residual)
+
+    def enclose(
+        self, contact: Contact, reached: Callable[[State], bool], start: State | None
+    ) -> tuple[State, State] | None:
+        return load_until(contact, reached, start=start, residual=RESIDUAL)
+
+    def unload(
+        self, state: State, *, steps: int, tolerance: float, residual: float, known: Sequence[State]
+    ) -> Iterator[State]:
+        accuracy = _UNACCOUNTED * tolerance
+        return separate_cohesive(cast(CohesiveState, state), accuracy=accuracy, known=known)
+
+    def separation_of(self, path: list[State]) -> Separation:
+        return separation_of(path)
+
+    def attraction_energy(self, state: State) -> float:
+        return -cast(CohesiveState, state).interaction_energy
+
+    def unbalance(self, state: State, end: State, work: float, lost: float) -> float:
+        begin, last = cast(CohesiveState, state), cast(CohesiveState, end)
+        released = begin.potential_energy - last.potential_energy
+        released -= end.plastic_work - state.plastic_work
+        return (work + lost - released) / state.stored_energy
+
+    def node_stiffness(self, state: State) -> Array | None:
+        return self.stiffness(box_gap(state))
+
+    def zone_length(self, pair: Pair) -> float:
+        """Length E*z₀²/w (m) of the cohesive zone at the edge of a contact."""
+        return pair.contact_modulus * self.equilibrium_separation**2 / self.work_of_adhesion
+
+    def coarsest_spacing(self, pair: Pair) -> float:
+        # At the distance sqrt(2R*z₀) from the apex, the gap under a paraboloid of radius R* has
+        # grown by z₀, the range of the attraction. The factor is a margin for rounding.
+        reach = math.sqrt(pair.radius * self.equilibrium_separation)
+        return COARSEST * (1 + 1e-9) * min(self.zone_length(pair), reach)
+
+    def needed_spacing(self, state: State) -> float:
+        radius = radius_of_asperities(state)
+        reach = _COARSEST_ON_ASPERITIES * math.sqrt(radius * self.equilibrium_separation)
+        return min(self.coarsest_spacing(state.contact.pair), reach)
+
+    def require_fine_grid(self, contact: Contact) -> None:
+        """Raise `CaseError` if the cells are too coarse; surfaces of companions are exempt."""
+        if not self.resolves_range(contact) and not contact.surface.provenance.get(COMPANION):
+            needed = self.coarsest_spacing(contact.pair)
+            raise CaseError(
+                f"grid.spacing: {1e9 * max(contact.grid.spacing):.4g} nm is too coarse for the "
+                f'range of the attraction; adhesion = "cohesive" needs {1e9 * needed:.4g} nm or '
+                "less (0.3 times the smaller of E* z0^2/w and sqrt(R* z0), with the work of "
+                "adhesion w and the equilibrium separation z0)"
+            )
+
+    def grid_finding(self, contact: Contact) -> Finding | None:
+        if self.resolves_range(contact):
+            return None
+        needed = self.coarsest_spacing(contact.pair)
+        return RangeUnresolved(max(contact.grid.spacing), needed, contact.periodic)
+
+    def grid_loss(self, contact: Contact) -> float:
+        """Relative error of the adhesive loss on the grid of `contact`."""
+        fineness = max(contact.grid.spacing) / (COARSEST * self.zone_length(contact.pair))
+        return _GRID_LOSS * fineness**2
+
+    def expected_pull_off_error(self, contact: Contact) -> float:
+        return _PULL_OFF
+
+
+@typed
+@dataclass(frozen=True)
+class Cohesive(CohesiveLaw):
+    """The Lennard-Jones law between half-spaces (`theory.LennardJones`).
+
+    Attributes:
+        work_of_adhesion: Work of adhesion w (J/m²), positive.
+        equilibrium_separation: Gap z₀ (m) at which the traction is zero, which sets the range.
+
+    Raises:
+        CaseError: A value is not positive.
+    """
+
+    work_of_adhesion: float
+    equilibrium_separation: float = EQUILIBRIUM_SEPARATION
+
+    label = "cohesive"
+
+    def __post_init__(self) -> None:
+        set_field(self, "work_of_adhesion", "J/m2")
+        set_field(self, "equilibrium_separation", "m")
+
+    @cached_property
+    def _law(self) -> LennardJones:
+        return LennardJones(self.work_of_adhesion, self.equilibrium_separation)
+
+    def describe(self, unloading: str) -> dict[str, str]:
+        z0 = f"{1e9 * self.equilibrium_separation:.4g} nm"
+        words = f"Lennard-Jones between half-spaces, z0 = {z0}"
+        return {"adhesion": words, "unloading": unloading}
+
+    @property
+    def gap_of_largest_traction(self) -> float:
+        return float(self._law.gap_of_largest_traction)
+
+    def energy(self, gap: Array) -> Array:
+        return self._law.energy(gap)
+
+    def traction(self, gap: Array) -> Array:
+        return self._law.traction(gap)
+
+    def stiffness(self, gap: Array) -> Array:
+        return self._stiffness_at(self.equilibrium_separation / gap)
+
+    def _stiffness_at(self, x: Array) -> Array:
+        scale = 8 * self.work_of_adhesion / self.equilibrium_separation**2
+        return scale * x**4 * (3 * x**6 - 1)
+
+    def potential(self, gap: Array) -> tuple[Array, Array, Array]:
+        w, z0 = self.work_of_adhesion, self.equilibrium_separation
+        x = z0 / gap
+        x2 = x * x
+        x4 = x2 * x2
+        x6 = x4 * x2
+        energy = (-w / 3) * x2 * (4 - x6)
+        slope = (8 * w / (3 * z0)) * (x2 * x) * (1 - x6)
+        return energy, slope, (8 * w / z0**2) * x4 * (3 * x6 - 1)
+
+    def gap_at(self, pressure: Array) -> Array:
+        w, z0 = self.work_of_adhesion, self.equilibrium_separation
+        return np.asarray(z0 / np.cbrt(_cubic_root(pressure * 3 * z0 / (8 * w))))
+
+    def largest_softening(self, smallest_gap: float) -> float:
+        x = np.minimum(self.equilibrium_separation / np.asarray(smallest_gap), _SOFTEST)
+        return max(0.0, -float(self._stiffness_at(x)))
+
+    def rigid_sphere_force(self, gap: float, radius: float) -> float:
+        return float(self._law.rigid_sphere_force(gap, radius))
+
+    def rigid_sphere_energy(self, gap: float, radius: float) -> float:
+        return float(self._law.rigid_sphere_energy(gap, radius))
+
+
+def _cubic_root(c: Array) -> Array:
+    """The root y ≥ 1 of y³ − y = c for c ≥ 0, by Viète's formulas."""
+    t = 1.5 * math.sqrt(3) * c
+    inside = np.cos(np.arccos(np.minimum(t, 1.0)) / 3)
+    beyond = np.cosh(np.arccosh(np.maximum(t, 1.0)) / 3)
+    return 2 / math.sqrt(3) * np.where(t < 1, inside, beyond)

@@ -1,0 +1,1 @@
+"""How bodies yield: a bound of the contact pressure."""

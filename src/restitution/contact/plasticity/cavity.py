@@ -1,0 +1,237 @@
+"""A pressure bound that grows from first yield to full plasticity, as in an expanding cavity.
+
+Johnson (1970, J. Mech. Phys. Solids 18, 115–126; 1985, §6.3); docs/method.md:
+
+    bound = Y · min(c₀ + c₁ ln(m/(c₀ Y)), c₂),   m = p_e(2δ)/√2 · [2(δ − h_c)/(2δ − h_c)]^s.
+
+p_e(2δ) is the pressure at the node between *elastic* bodies at twice the indentation, h_c the gap at
+the crest of the asperity, and s = max(1 − (p_H/m₀)^1.5, 0) is 1 for separate asperities and 0 where
+they have merged (p_H: Hertz pressure of the smooth bodies under the same force). On a ridge, c₀, c₁
+and c₂ are larger by 0.11 q, 1.1 q and 0.25 q with q = (1 − κ₂/κ₁)² s. With hardening, a flow stress
+replaces the factor Y; its strain is the increase of 0.2 a/R since first yield (Tabor 1951).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.arguments import typed
+from restitution.contact.bodies import Pair
+from restitution.contact.contact import Contact
+from restitution.contact.equilibrium import elastic_pressure
+from restitution.contact.models import Load, Plasticity, set_field
+from restitution.contact.state import Array, State
+from restitution.display import quantity
+from restitution.errors import CaseError
+from restitution.numerics.box import Box
+from restitution.numerics.read_only import freeze
+from restitution.theory import Hertz, yield_coefficient
+
+Nodes = tuple[NDArray[np.intp], ...]  # indices of rows and columns
+
+# Ratio of pressure to yield strength of a fully plastic contact (Tabor 1951).
+FULL_CONSTRAINT = 2.8
+
+# Coefficients of the ratio of the pressure bound to the yield strength, for round asperities:
+# growth with the logarithm of the strain (c₁), and upper limit (c₂).
+GROWTH, LARGEST = 0.65, 3.5
+# Three coefficients are larger for a ridge than for a round asperity, by these relative amounts:
+# c₀ (value at first yield), c₁ (growth with strain) and c₂ (upper limit).
+_RIDGE_ONSET, _RIDGE_GROWTH, _RIDGE_LARGEST = 0.11, 1.1, 0.25
+_DEPTH_FACTOR = 2.0  # the elastic pressure is computed at this multiple of the indentation
+
+# The bound is computed from an elastic solve. The tolerance of this solve is _RESIDUAL_FACTOR times
+# the tolerance of the later solve under the bound, but at most _LARGEST_RESIDUAL. On 143 random
+# rough surfaces, tolerances of 5e-5 and 1e-8 gave values of COR that differ by at most 7.5e-5
+# (tests/contact/test_cavity.py checks 1e-4).
+_RESIDUAL_FACTOR, _LARGEST_RESIDUAL = 5e3, 5e-5
+_TABOR = 0.2  # representative strain divided by a/R (contact radius a, radius R of the sphere)
+
+# In each step, the pressure bound of a node grows. The error of the plastic work is a fraction of
+# this growth times the plastic displacement of the step. The fraction is _RULE_ERROR for nodes that
+# had yielded before the step, and _NEW_ERROR for nodes that begin to yield in the step. Both
+# fractions come from a comparison with steps that are 11 times finer. At nodes that begin to yield,
+# the mean of the bound during yielding is the bound before the step plus _NEW times the growth.
+_RULE_ERROR, _NEW, _NEW_ERROR = 0.1, 0.8, 0.25
+# The plastic work is a sum over depths. The first depth is _SHALLOW times the indentation, and each
+# further depth is at most _RATIO times the one before, because the error of a step holds up to this
+# ratio.
+_RATIO, _SHALLOW = 1.42, 0.2
+
+# Values of the steepness ψ = E* S/Y of the asperities (rms slope S), and the largest relative
+# difference of COR from finite elements (docs/validation.md) at each of these values.
+_STEEPNESS, _GROWING = (0.0, 4.0, 6.0), (0.03, 0.035, 0.045)
+# Values of the COR due to plasticity alone, and a factor of the largest difference for each of them.
+_NEAR_ONE = (0.94, 0.98, 1.0), (1.0, 0.5, 0.2)
+
+
+@typed
+@dataclass(frozen=True)
+class ExpandingCavity(Plasticity):
+    """The pressure bound grows with deformation, as in an expanding cavity.
+
+    Attributes:
+        yield_strength: Yield strength Y of a tensile test (Pa).
+        tangent_modulus: Slope of the stress-strain curve of a tensile test after yield (Pa).
+
+    Raises:
+        CaseError: A value is impossible.
+
+    Source:
+        K. L. Johnson, J. Mech. Phys. Solids 18 (1970) 115–126.
+    """
+
+    yield_strength: float
+    tangent_modulus: float = 0.0
+
+    label = "expanding-cavity"
+    grows = True
+    for_periodic = False
+
+    def __post_init__(self) -> None:
+        set_field(self, "yield_strength", "Pa")
+        object.__setattr__(self, "tangent_modulus", float(self.tangent_modulus))
+
+    def check(self, pair: Pair) -> None:
+        softest = min(body.youngs_modulus for body in (pair.first, pair.second))
+        if not 0 <= self.tangent_modulus < softest:
+            raise CaseError(
+                f"tangent_modulus: {self.tangent_modulus:g} Pa is not between 0 and Young's "
+                f"modulus, {softest:g} Pa"
+            )
+
+    @property
+    def hardness(self) -> float:
+        """Pressure of a fully plastic contact, 2.8 Y (Pa)."""
+        return FULL_CONSTRAINT * self.yield_strength
+
+    def describe(self) -> str:
+        return f"yield strength {quantity(self.yield_strength, 'Pa')} ({self.label})"
+
+    def first_yield_pressure(self, pair: Pair) -> float:
+        """Largest pressure at which smooth bodies stay elastic (Pa).
+
+        Source: R. L. Jackson, I. Green, J. Tribology 127 (2005) 343–354, at the mean Poisson's
+        ratio of the bodies.
+        """
+        nu = 0.5 * (pair.first.poissons_ratio + pair.second.poissons_ratio)
+        return float(yield_coefficient(nu)) * self.yield_strength
+
+    def onset_pressure(self, pair: Pair) -> float:
+        return self.first_yield_pressure(pair)
+
+    def hardening_modulus(self, pair: Pair) -> float:
+        """Slope E_t/(1 − E_t/E) of the flow stress against *plastic* strain (Pa)."""
+        E = min(body.youngs_modulus for body in (pair.first, pair.second))
+        return self.tangent_modulus / (1 - self.tangent_modulus / E)
+
+    def bound(
+        self, contact: Contact, indentation: float, residual: float
+    ) -> tuple[Array | float, int]:
+        return yield_bound(contact, max(indentation, 0.0), residual)
+
+    def bound_at(self, pair: Pair, measure: Array, ridge: Array | float = 0.0) -> Array:
+        """Bound (Pa) where the value m of the module docstring is `measure` (Pa).
+
+        `ridge` is q, from 0 (round asperity) to 1 (ridge).
+        """
+        Y, hardening = self.yield_strength, self.hardening_modulus(pair)
+        c_0 = self.first_yield_pressure(pair) / Y * (1 + _RIDGE_ONSET * ridge)
+        beyond = np.maximum(measure / (c_0 * Y), 1.0)
+        factor = np.minimum(
+            c_0 + GROWTH * (1 + _RIDGE_GROWTH * ridge) * np.log(beyond),
+            LARGEST * (1 + _RIDGE_LARGEST * ridge),
+        )
+        flow_stress: Array | float = Y
+        if hardening > 0:
+            strain = _TABOR * math.pi / 2 * (beyond - 1) * c_0 * Y / pair.contact_modulus
+            flow_stress = Y + hardening * strain
+        return factor * flow_stress
+
+    def work(self, before: State | None, after: State) -> tuple[float, float]:
+        """Plastic work (J) of a step to at most 1.42 times the depth, and its error (J).
+
+        Where nodes had yielded before, the plastic displacement is taken as linear in the
+        indentation δ and the bound as linear in ln δ. The work per area of the displacement Δu is
+        then Δu [b₁ + (b₂ − b₁) (δ₂/(δ₂ − δ₁) − 1/ln(δ₂/δ₁))].
+        """
+        contact, box = after.contact, after.box
+        given, begun = after.plastic_displacement[box], np.asarray(contact.first_yield_pressure)
+        old, ratio = np.zeros(1, dtype=bool), math.inf
+        if before is not None:
+            begun = _on(before.bound, box)
+            old = before.plastic_displacement[box] > 0
+            given = given - before.plastic_displacement[box]
+            if before.indentation > 0:
+                ratio = after.indentation / before.indentation
+        share = ratio / (ratio - 1) - 1 / math.log(ratio) if 1 < ratio < math.inf else 0.5
+        area = contact.grid.cell_area
+        whole = float(np.sum(given * begun)) * area
+        growth = given * (_on(after.bound, box) - begun)
+        on, new = (float(np.sum(growth, where=nodes)) * area for nodes in (old, ~old))
+        return whole + share * on + _NEW * new, _RULE_ERROR * abs(on) + _NEW_ERROR * abs(new)
+
+    def with_loading_work(self, state: State, start: State | None, load: Load) -> State:
+        contact, indentation = state.contact, state.indentation
+        first = _SHALLOW * indentation if start is None else start.indentation
+        steps = max(1, math.ceil(math.log(indentation / first) / math.log(_RATIO) - 1e-9))
+        depths = first * (indentation / first) ** (np.arange(steps) / steps)
+        work, error, convolutions, before = 0.0, 0.0, 0, start
+        if start is not None:
+            work, error, depths = start.plastic_work, start.work_error, depths[1:]
+        for depth in (*map(float, depths), indentation):
+            now = state if depth == indentation else load(contact, depth, None)
+            convolutions += now.convolutions
+            increment, increment_error = self.work(before, now)
+            work, error, before = work + increment, error + increment_error, now
+        return replace(state, plastic_work=work, work_error=error, convolutions=convolutions)
+
+    def difference(self, contact: Contact, restitution: float) -> float:
+        steepness = contact.pair.contact_modulus * contact.slope / self.yield_strength
+        return float(
+            np.interp(steepness, _STEEPNESS, _GROWING) * np.interp(restitution, *_NEAR_ONE)
+        )
+
+
+def yield_bound(contact: Contact, indentation: float, residual: float) -> tuple[Array, int]:
+    """Compute the bound (Pa) at `indentation` (m) from an elastic solve, as `Plasticity.bound`."""
+    bound = np.full(contact.grid.nodes, contact.first_yield_pressure)
+    tolerance = min(_RESIDUAL_FACTOR * residual, _LARGEST_RESIDUAL)
+    pressure, box, convolutions = elastic_pressure(contact, _DEPTH_FACTOR * indentation, tolerance)
+    nodes = np.nonzero(pressure)
+    measure = pressure[nodes]
+    force = float(measure.sum()) * contact.grid.cell_area
+    measure *= 1 / math.sqrt(_DEPTH_FACTOR)
+    merged = _smooth_pressure(contact, box, nodes, force) / measure
+    separate = np.maximum(1 - merged * np.sqrt(merged), 0)
+    apart = np.nonzero(separate)
+    at_apart = tuple(index[apart] for index in nodes)
+    depth_ratio = _depth_ratio(contact.crest_gap[box][at_apart], indentation)
+    ridge = contact.elongation[box][at_apart] * separate[apart]
+    model, pair = cast(ExpandingCavity, contact.plasticity), contact.pair
+    bounds = model.bound_at(pair, measure)
+    bounds[apart] = model.bound_at(pair, measure[apart] * depth_ratio ** separate[apart], ridge)
+    bound[box][nodes] = bounds
+    return freeze(bound), convolutions
+
+
+def _depth_ratio(crest_gap: Array, indentation: float) -> Array:
+    """Depth correction 2(δ − h_c)/(2δ − h_c) of the asperity at each node; 0 where δ < h_c."""
+    depth = np.maximum(indentation - crest_gap, 0)
+    return _DEPTH_FACTOR * depth / (_DEPTH_FACTOR * indentation - crest_gap)
+
+
+def _smooth_pressure(contact: Contact, box: Box, nodes: Nodes, force: float) -> Array:
+    """Hertzian pressure (Pa) of the smooth bodies under `force` (N) at the `nodes` of `box`."""
+    smooth = Hertz(contact.pair.radius, contact.pair.contact_modulus)
+    x, y = contact.grid.x[box[0]] - contact.apex[0], contact.grid.y[box[1]] - contact.apex[1]
+    return smooth.pressure(np.hypot(x[nodes[0]], y[nodes[1]]), smooth.indentation(force))
+
+
+def _on(bound: Array | float, box: Box) -> Array:
+    return np.asarray(bound) if np.ndim(bound) == 0 else np.asarray(bound)[box]

@@ -1,0 +1,1 @@
+"""Contacts under a prescribed force, impact velocity or nominal pressure."""
