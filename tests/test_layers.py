@@ -29,7 +29,7 @@ ROOMS = (
     "api",
     "plots",
     "pages",
-    "live",
+    "app",
     "reproduce",
     "cli",
     "__main__",

@@ -8,9 +8,9 @@ from typing import Any
 
 import uvicorn
 
+from restitution.app.server import OwnHostOnly, Server
+from restitution.app.session import Session
 from restitution.errors import CaseError
-from restitution.live.server import OwnHostOnly, Server
-from restitution.live.session import Session
 
 
 class _Uvicorn(uvicorn.Server):

@@ -29,11 +29,11 @@ from starlette.responses import FileResponse, JSONResponse, Response, StreamingR
 from starlette.routing import Route
 from starlette.types import ASGIApp, Receive, Scope, Send
 
+from restitution.app.content import content_of, text_of
+from restitution.app.form import form
+from restitution.app.process import Process
+from restitution.app.session import LARGEST_SCAN, Session
 from restitution.errors import CaseError
-from restitution.live.content import content_of, text_of
-from restitution.live.form import form
-from restitution.live.process import Process
-from restitution.live.session import LARGEST_SCAN, Session
 
 _LARGEST_BODY = 2**22  # largest size of a JSON request (bytes)
 _HEADERS = {
@@ -294,4 +294,4 @@ async def _store(request: Request, file: Any) -> None:
 
 @cache
 def _file(name: str) -> str:
-    return (files("restitution.live") / "static" / name).read_text("utf-8")
+    return (files("restitution.app") / "static" / name).read_text("utf-8")

@@ -8,9 +8,9 @@ import shutil
 from pathlib import Path
 from tempfile import mkdtemp
 
+from restitution.app.content import Content, content_of, scans_of
 from restitution.case.case_file import read_text
 from restitution.errors import CaseError
-from restitution.live.content import Content, content_of, scans_of
 
 LARGEST_SCAN = 2**28  # largest size (bytes) of a scan that the user drops on the page
 _ODD = re.compile(r"[^\w.()+-]+")  # characters of a file name that are replaced
@@ -53,7 +53,7 @@ def first_content(case: Path | None) -> Content:
     if case is None:
         from importlib.resources import files
 
-        text = (files("restitution.live") / "first.toml").read_text("utf-8")
+        text = (files("restitution.app") / "first.toml").read_text("utf-8")
     else:
         text = read_text(case)
     try:

@@ -11,10 +11,10 @@ from collections.abc import Callable
 from pathlib import Path
 from tempfile import mkdtemp
 
+from restitution.app.figures import as_json, curve_figures
 from restitution.case.case_file import parse_case
 from restitution.case.omissions import default_yield
 from restitution.errors import RestitutionError
-from restitution.live.figures import as_json, curve_figures
 from restitution.results.reader import read_run
 from restitution.results.writer import ResultsFolder
 from restitution.runs.convergence import run_convergence

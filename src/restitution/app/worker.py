@@ -20,11 +20,11 @@ from pathlib import Path
 from tempfile import mkdtemp
 from typing import Any
 
+from restitution.app.content import problems_in
+from restitution.app.curve import LiveCurves
+from restitution.app.figures import as_json
+from restitution.app.runs import Runs, results_line
 from restitution.errors import RestitutionError, one_line
-from restitution.live.content import problems_in
-from restitution.live.curve import LiveCurves
-from restitution.live.figures import as_json
-from restitution.live.runs import Runs, results_line
 
 REPLACED = as_json({"replaced": True})
 
@@ -155,7 +155,7 @@ class Worker:
 
         `code` and `velocity` are the options of the export to a DEM code. `grids` is as in `run`.
         """
-        from restitution.live import take_away
+        from restitution.app import take_away
 
         out = Path(mkdtemp(dir=self._room, prefix="take-"))
         if what == "case":

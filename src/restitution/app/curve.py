@@ -11,19 +11,19 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from restitution.case.case import Case
-from restitution.case.case_file import parse_case
-from restitution.case.derived import deepest_indentation
-from restitution.case.omissions import default_yield, omissions
-from restitution.contact.contact import Contact
-from restitution.errors import DomainError, RestitutionError
-from restitution.live.figures import (
+from restitution.app.figures import (
     ContactMaps,
     as_json,
     curve_figures,
     live_dataset,
     surface_content,
 )
+from restitution.case.case import Case
+from restitution.case.case_file import parse_case
+from restitution.case.derived import deepest_indentation
+from restitution.case.omissions import default_yield, omissions
+from restitution.contact.contact import Contact
+from restitution.errors import DomainError, RestitutionError
 from restitution.results.curve_row import curve_row
 from restitution.runs.depths import collision_at, loaded_depths
 from restitution.runs.messages import input_warnings, require_possible

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from live_app import App
+from app_process import App
 from tolerance import approx
 
 pytest.importorskip("starlette", reason='the extra "app" is not installed')

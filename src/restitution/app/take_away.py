@@ -10,9 +10,9 @@ from tempfile import TemporaryDirectory
 from zipfile import ZIP_DEFLATED, ZipFile
 
 from restitution.api import export, law_of
+from restitution.app.content import content_of, scans_of
 from restitution.errors import CaseError
 from restitution.laws.law_files import write_law
-from restitution.live.content import content_of, scans_of
 from restitution.pages.report import write_report
 from restitution.plots.law import law_figure
 from restitution.plots.run import run_figures

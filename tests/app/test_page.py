@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-from live_page import (
+from app_page import (
     COMPLETE,
     NUMBERS,
     RMS,

@@ -15,8 +15,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from restitution.live.figures import as_json
-from restitution.live.worker import Request, serve
+from restitution.app.figures import as_json
+from restitution.app.worker import Request, serve
 
 _PATIENCE = 1.5  # time (s) that a cancelled request may take to stop
 _LOST = as_json(
