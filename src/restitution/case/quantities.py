@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable
+from dataclasses import dataclass
 from decimal import Decimal
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Annotated, Any, NamedTuple
 
 import pint
-from pydantic import BeforeValidator
+from pydantic import GetCoreSchemaHandler
+from pydantic_core import core_schema
 
 from restitution.errors import shown
 
@@ -27,17 +30,10 @@ LONGEST = 100
 
 
 class _Quantity(NamedTuple):
-    """A physical quantity of the case file.
-
-    `usual` lists the usual units. If a unit differs from one of them only in capital letters, the
-    error message suggests the usual unit. `bounds` is the plausible range in SI units. A value
-    outside this range almost certainly has a wrong unit, and could make formulas overflow or
-    underflow.
-    """
-
     name: str
     example: str
-    usual: str
+    usual: str  # usual units; suggested for a unit that differs only in capital letters
+    # Plausible range (SI). A value outside has a wrong unit, and could make formulas overflow.
     bounds: tuple[float, float] = (-math.inf, math.inf)
 
 
@@ -65,10 +61,7 @@ def _registry() -> pint.UnitRegistry[float]:
 
 
 def unit_factors() -> dict[str, dict[str, float]]:
-    """Return the factors that convert the usual units to each SI unit.
-
-    For example, `unit_factors()["m"]["um"]` is 1e-6.
-    """
+    """The usual units of each SI unit, in this unit: `unit_factors()["m"]["um"]` is 1e-6."""
     return {
         si: {name: read_quantity(f"1 {name}", si) for name in kind.usual.split()}
         for si, kind in _QUANTITIES.items()
@@ -123,15 +116,12 @@ def scaled(value: str, factor: float, digits: int = 17) -> str:
 def _other_case(name: str, unit: str) -> str | None:
     """Suggest a usual unit if `name` differs from it only in capital letters ("gpa")."""
     usual = _QUANTITIES[unit].usual.split()
-    alike = (each for each in usual if each.lower() == name.lower() and each != name)
-    return next((f"did you mean {each}?" for each in alike), None)
+    alike = (word for word in usual if word.lower() == name.lower() and word != name)
+    return next((f"did you mean {word}?" for word in alike), None)
 
 
 def read_positive(value: Any, unit: str, *, or_zero: bool = False) -> float:
-    """Convert as `read_quantity` does, and require a plausible positive value.
-
-    `or_zero` also allows zero.
-    """
+    """As `read_quantity`, for plausible values above zero or, with `or_zero`, zero."""
     result = read_quantity(value, unit)
     if or_zero and result == 0:
         return 0.0
@@ -161,17 +151,33 @@ def read_impact_angle(value: Any) -> float:
     return result
 
 
-def _positive(unit: str, *, or_zero: bool = False) -> BeforeValidator:
-    return BeforeValidator(lambda value: read_positive(value, unit, or_zero=or_zero))
+@dataclass(frozen=True)
+class Unit:
+    """Makes pydantic read texts such as "500 um" into numbers in the unit `si`."""
+
+    si: str
+    read: Callable[[Any, str], Any] = read_positive
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        return core_schema.no_info_before_validator_function(
+            lambda value: self.read(value, self.si), handler(source)
+        )
+
+    @property
+    def quantity(self) -> str:
+        """Name of the quantity, such as "length"."""
+        return _QUANTITIES[self.si].name.split(" ", 1)[1]
 
 
-Length = Annotated[float, _positive("m")]
-Pressure = Annotated[float, _positive("Pa")]
-Density = Annotated[float, _positive("kg/m^3")]
-SurfaceEnergy = Annotated[float, _positive("J/m^2", or_zero=True)]
-Force = Annotated[float, _positive("N")]
-Velocity = Annotated[float, _positive("m/s")]
-Angle = Annotated[float, BeforeValidator(lambda value: read_quantity(value, "rad"))]
-ImpactAngle = Annotated[float, BeforeValidator(read_impact_angle)]
-Spin = Annotated[float, BeforeValidator(lambda value: read_quantity(value, "rad/s"))]
-Position = Annotated[float, BeforeValidator(lambda value: read_quantity(value, "m"))]
+Length = Annotated[float, Unit("m")]
+Pressure = Annotated[float, Unit("Pa")]
+Density = Annotated[float, Unit("kg/m^3")]
+SurfaceEnergy = Annotated[float, Unit("J/m^2", partial(read_positive, or_zero=True))]
+Force = Annotated[float, Unit("N")]
+Velocity = Annotated[float, Unit("m/s")]
+Angle = Annotated[float, Unit("rad", read_quantity)]
+ImpactAngle = Annotated[float, Unit("rad", lambda value, _: read_impact_angle(value))]
+Spin = Annotated[float, Unit("rad/s", read_quantity)]
+Position = Annotated[float, Unit("m", read_quantity)]

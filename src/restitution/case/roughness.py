@@ -12,6 +12,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from restitution.case import needs
 from restitution.case.quantities import Angle, Length, Position
+from restitution.case.rulebook import Key
 from restitution.case.schema import PairOf, Table
 from restitution.errors import SurfaceError, shown
 from restitution.numerics.grid import Grid
@@ -28,7 +29,8 @@ from restitution.surfaces import (
 from restitution.surfaces.cache import kept
 from restitution.surfaces.defects import noted
 from restitution.surfaces.extend import Extension
-from restitution.surfaces.generate import RoughnessKind
+from restitution.surfaces.generate import WAVES, RoughnessKind
+from restitution.surfaces.level import Levelling
 from restitution.surfaces.reading.scan import UNITS, in_metres
 from restitution.surfaces.refine import divided
 from restitution.surfaces.refused import Code, RefusedSurfaceError
@@ -92,7 +94,17 @@ def _unit_of_length(value: str) -> str:
 
 
 Realisations = Annotated[int, Field(ge=1, le=MOST_REALISATIONS)]
+REALISATIONS = Key(
+    "number of twins, or of places of the scan",
+    label="Surfaces",
+    hint="the curve is the mean over them; while a slider moves, only the first is computed",
+    slider=(1, 16),
+)
 Seed = Annotated[int, Field(ge=0, lt=2**63)]
+
+
+def _kinds_with(wave: str) -> tuple[str, ...]:
+    return "kind", *(kind for kind, waves in WAVES.items() if wave in waves)
 
 
 @contextmanager
@@ -113,18 +125,90 @@ def _naming(keys: Mapping[str, str]) -> Iterator[None]:
 class GeneratedRoughness(Table):
     """The table `[roughness]` with `kind` exponential, gaussian or self-affine."""
 
-    kind: RoughnessKind
-    rms: Length
-    seed: Seed
-    realisations: Realisations = 1
-    correlation_length: Annotated[tuple[Length, Length], PairOf] | None = None
-    lay: Angle = 0.0
-    hurst: float | None = None
-    rolloff: Length | None = None
-    shortest: Length | None = None
-    skewness: float = 0.0
-    kurtosis: float = 3.0
-    periodic: bool = True
+    kind: Annotated[
+        RoughnessKind,
+        Key(
+            '`"exponential"` or `"gaussian"` autocorrelation, or `"self-affine"`',
+            label="Roughness",
+            empty="smooth",
+        ),
+    ]
+    rms: Annotated[
+        Length, Key("Rq, met exactly", label="Rq", slider=(1e-9, 1e-5), initial="0.1 um")
+    ]
+    correlation_length: Annotated[
+        Annotated[tuple[Length, Length], PairOf] | None,
+        Key(
+            "distance at which the autocorrelation has fallen to 10 %; one value, or two (along "
+            "the lay and across it); at least one grid spacing, and at most half the size of the "
+            "grid",
+            default="required unless self-affine",
+            label="Correlation length",
+            slider=(1e-8, 1e-4),
+            initial="2 um",
+            only=_kinds_with("correlation_length"),
+        ),
+    ] = None
+    lay: Annotated[
+        Angle,
+        Key(
+            "direction of the first correlation length, from the x axis",
+            default='`"0 deg"`',
+            only=_kinds_with("lay"),
+        ),
+    ] = 0.0
+    hurst: Annotated[
+        float | None,
+        Key(
+            "Hurst exponent H, above 0 and up to 1: the power spectral density falls as q^−2(H+1)",
+            default="required if self-affine",
+            label="Hurst exponent",
+            slider=(0.05, 0.99),
+            initial=0.8,
+            only=_kinds_with("hurst"),
+        ),
+    ] = None
+    rolloff: Annotated[
+        Length | None,
+        Key(
+            "self-affine: wavelength above which the spectrum is flat",
+            default="size of the grid",
+            label="Roll-off wavelength",
+            slider=(1e-8, 1e-4),
+            initial="10 um",
+            only=_kinds_with("rolloff"),
+        ),
+    ] = None
+    shortest: Annotated[
+        Length | None,
+        Key(
+            "waves shorter than this are left out",
+            default="two grid spacings",
+            label="Shortest wavelength",
+            slider=(1e-9, 1e-5),
+            more=True,
+        ),
+    ] = None
+    skewness: Annotated[float, Key("skewness of the heights")] = 0.0
+    kurtosis: Annotated[
+        float,
+        Key("kurtosis of the heights (normal distribution: 3); at least skewness² + 1.1"),
+    ] = 3.0
+    periodic: Annotated[bool, Key("whether the heights at opposite edges of the surface match")] = (
+        True
+    )
+    seed: Annotated[
+        Seed, Key("seed of the random numbers", label="Seed", slider=(0, 100), initial=1)
+    ]
+    realisations: Annotated[
+        Realisations,
+        replace(
+            REALISATIONS,
+            meaning="number of surfaces, with the seeds `seed`, `seed` + 1, …: `run` then computes "
+            "the mean, the standard deviation and the confidence interval of COR, see "
+            "[results](results.md)",
+        ),
+    ] = 1
 
     def variant(self, number: int) -> Self:
         """Return the table of a single surface, with the seed increased by `number`."""
@@ -152,31 +236,129 @@ class CropTable(Table):
 class MeasuredRoughness(Table):
     """The table `[roughness]` with `kind = "measured"`."""
 
-    kind: Literal["measured"]
-    file: Annotated[str, Field(min_length=1)]
-    channel: Annotated[int, Field(ge=0)] | None = None
-    size: Annotated[tuple[Length, Length], PairOf] | None = None
-    height_unit: Annotated[str, AfterValidator(_unit_of_length)] | None = None
-    undefined: Literal["error", "interpolate"] = "error"
-    crop: CropTable = CropTable()
-    outliers: Annotated[float, Field(gt=0)] | None = None
-    detrend: Literal["none", "center", "tilt", "curvature"] = "none"
-    extend: Extension | None = None
-    seed: Seed | None = None
-    place: Annotated[int, Field(ge=0, le=MOST_PLACES)] = 0
-    realisations: Realisations = 1
+    kind: Annotated[
+        Literal["measured"],
+        Key('`"measured"`', choices=lambda: {"measured": "measured: a scan"}),
+    ]
+    file: Annotated[
+        Annotated[str, Field(min_length=1)],
+        Key("topography file", label="Scan", hint="drop a file onto the page"),
+    ]
+    channel: Annotated[
+        Annotated[int, Field(ge=0)] | None,
+        Key(
+            "number of the height channel",
+            default="the reader's default",
+            label="Channel of the file",
+            more=True,
+        ),
+    ] = None
+    size: Annotated[
+        Annotated[tuple[Length, Length], PairOf] | None,
+        Key(
+            "edge lengths in x and y (or one for both); they replace those in the file, with a "
+            "warning if these differ",
+            default="from the file",
+            label="Edge lengths",
+            hint="if the file lacks them, or is wrong",
+            more=True,
+        ),
+    ] = None
+    height_unit: Annotated[
+        Annotated[str, AfterValidator(_unit_of_length)] | None,
+        Key(
+            'unit of the heights: `"m"`, `"mm"`, `"um"`, `"nm"` or `"pm"`; it replaces the unit in '
+            "the file, with a warning if this differs",
+            default="from the file, or m",
+            label="Unit of the heights",
+            empty="as in the file, or m",
+            more=True,
+            choices=lambda: {unit: unit for unit in ("um", "nm", "mm", "m", "pm")},
+        ),
+    ] = None
+    undefined: Annotated[
+        Literal["error", "interpolate"],
+        Key(
+            '`"interpolate"` fills undefined pixels harmonically, up to 20 % of the part that '
+            "`crop` selects",
+            label="Missing pixels",
+            empty="refuse",
+            more=True,
+        ),
+    ] = "error"
+    crop: Annotated[
+        CropTable,
+        Key(
+            '`{ x = ["-4 um", "5 um"], y = [...] }`: the part of the scan that is used, from a '
+            "first to a last `x` and `y` (`x` or `y` may be left out). The coordinates are those "
+            "of the map that `restitution surface` draws of the scan without `crop` (0 in the "
+            "middle of the scan). A range must not extend beyond the scan",
+            default="all",
+        ),
+    ] = CropTable()
+    outliers: Annotated[
+        Annotated[float, Field(gt=0)] | None,
+        Key(
+            "pixels whose height above a fitted paraboloid differs from the median of the 5 × 5 "
+            "pixels around them by more than this number of robust standard deviations are "
+            "replaced harmonically; 6 to 10 removes spikes and dust of up to 3 × 3 pixels, and up "
+            "to two slipped lines side by side",
+            label="Outlier threshold",
+            hint="in standard deviations",
+            slider=(3, 30),
+            logarithmic=True,
+            more=True,
+        ),
+    ] = None
+    detrend: Annotated[
+        Levelling,
+        Key(
+            '`"center"`, `"tilt"` (plane) or `"curvature"` (paraboloid), fitted to the part of the '
+            "scan that is used",
+            label="Subtract",
+            empty="nothing",
+            initial="curvature",
+        ),
+    ] = "none"
+    extend: Annotated[
+        Extension | None,
+        Key(
+            'for a grid larger than the scan: `"twin"` or `"mirror"`, see below',
+            label="Extend the scan",
+            empty="no",
+            more=True,
+        ),
+    ] = None
+    seed: Annotated[
+        Seed | None,
+        Key(
+            'with `extend = "twin"`: seed of the random numbers',
+            default="required for a twin",
+            label="Seed of the twin",
+            slider=(0, 100),
+            initial=1,
+            only=("extend", "twin"),
+            otherwise='seed applies only to extend = "twin"; remove seed, or set place to select '
+            "another part of the scan",
+        ),
+    ] = None
+    place: Annotated[
+        Annotated[int, Field(ge=0, le=MOST_PLACES)],
+        Key(
+            "number of the point of the scan that lies in the middle of the contact. 0 is the "
+            "centre of the scan; the points 1, 2 … are distributed evenly over the scan. If the "
+            "grid extends beyond an edge of the scan, the mirror image of the scan continues it "
+            "there, and a warning says so",
+            only=("extend", "", "mirror"),
+            otherwise='place does not apply to extend = "twin"; remove place, or vary seed',
+        ),
+    ] = 0
+    realisations: Annotated[Realisations, REALISATIONS] = 1
 
     @model_validator(mode="after")
-    def _twins(self) -> Self:
+    def _seeded(self) -> Self:
         if self.extend == "twin" and self.seed is None:
             raise ValueError('extend = "twin" makes a random surface and needs a seed; give a seed')
-        if self.seed is not None and self.extend != "twin":
-            raise ValueError(
-                'seed applies only to extend = "twin"; remove seed, or set place to select another '
-                "part of the scan"
-            )
-        if self.place and self.extend == "twin":
-            raise ValueError('place does not apply to extend = "twin"; remove place, or vary seed')
         return self
 
     def variant(self, number: int) -> Self:

@@ -43,7 +43,7 @@ class Waves(TypedDict, total=False):
     shortest: float | None
 
 
-_WAVES: dict[str, tuple[str, ...]] = {
+WAVES: dict[str, tuple[str, ...]] = {
     "exponential": ("correlation_length", "lay", "shortest"),
     "gaussian": ("correlation_length", "lay", "shortest"),
     "self-affine": ("hurst", "rolloff", "shortest"),
@@ -132,7 +132,7 @@ def generate_surface(
 
 def _spectrum(kind: RoughnessKind, waves: Waves) -> Spectrum:
     """Return the spectrum of `kind`. Raises `SurfaceError` for an argument of another kind."""
-    if kind not in _WAVES:
+    if kind not in WAVES:
         raise SurfaceError(
             f"kind: {kind!r} is unknown; choose 'exponential', 'gaussian' or 'self-affine'"
         )
@@ -140,7 +140,7 @@ def _spectrum(kind: RoughnessKind, waves: Waves) -> Spectrum:
         if name not in Waves.__annotations__:
             raise TypeError(f"generate_surface() got an unexpected keyword argument {name!r}")
         # A lay of 0 is the default, so it is allowed for every kind.
-        if name not in _WAVES[kind] and value is not None and (name, value) != ("lay", 0):
+        if name not in WAVES[kind] and value is not None and (name, value) != ("lay", 0):
             raise SurfaceError(f"{name}: does not belong to kind = {kind!r}; leave it out")
     shortest = waves.get("shortest")
     if kind == "self-affine":
