@@ -281,8 +281,8 @@ class InterfaceTable(Table):
     approach: Annotated[
         Approach,
         Key(
-            'with `adhesion = "jkr"`: how adhesion acts during '
-            '[loading](adhesion.md#three-ways-to-approach). Alternatives are `"hertzian"` '
+            "how adhesion acts during [loading](adhesion.md#three-ways-to-approach). "
+            'Alternatives are `"hertzian"` '
             '(adhesion during unloading only) and `"pull-increments"` (the method of the paper)',
             label="Approach",
             empty="equilibrium",
@@ -295,8 +295,8 @@ class InterfaceTable(Table):
     detachment: Annotated[
         Detachment,
         Key(
-            'with `adhesion = "jkr"`: criterion for [releasing a '
-            'node](adhesion.md#when-a-node-is-released). The alternative is `"pohrt-popov"` '
+            "criterion for [releasing a node](adhesion.md#when-a-node-is-released). "
+            'The alternative is `"pohrt-popov"` '
             "(the criterion of the paper)",
             label="Detachment",
             empty="crack-closure",

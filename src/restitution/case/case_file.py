@@ -10,10 +10,10 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, get_args
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from restitution.case.case import Case
-from restitution.case.roughness import CropTable, GeneratedRoughness, MeasuredRoughness
+from restitution.case.rulebook import rules, tables_in
 from restitution.case.schema import MOST_STEPS, Table
 from restitution.errors import CaseError, SurfaceError, did_you_mean, shown
 from restitution.surfaces.generate import RoughnessKind
@@ -152,10 +152,8 @@ def problems_of(content: dict[str, Any]) -> dict[str, str]:
     try:
         Case.model_validate(content)
     except ValidationError as error:
-        return {
-            (key := _key_of(each)): _in_words(each, Case).removeprefix(f"{key}: ")
-            for each in reversed(error.errors(include_url=False))
-        }
+        said = ((p, *_in_words(p, Case)) for p in reversed(error.errors(include_url=False)))
+        return {key or _key_of(problem): words for problem, key, words in said}
     except CaseError as error:
         return {"": str(error)}
     return {}
@@ -171,7 +169,8 @@ def in_words(error: ValidationError, root: type[Table] = Case, before: str = "")
     problems = error.errors(include_url=False)
     problems.sort(key=lambda problem: problem["type"] != "extra_forbidden")
     where = f"{before}." if before else ""
-    return where + _in_words(problems[0], root) + _others(problems)
+    key, words = _in_words(problems[0], root)
+    return where + (f"{key}: {words}" if key else words) + _others(problems)
 
 
 def _others(problems: list[Any]) -> str:
@@ -215,47 +214,41 @@ def _key_of(problem: Any) -> str:
     return ".".join(names)
 
 
-def _in_words(problem: Any, root: type[Table]) -> str:
-    """Describe a pydantic error in one line: the key, the problem and the remedy."""
+def _in_words(problem: Any, root: type[Table]) -> tuple[str, str]:
+    """The key of a pydantic error, and the problem and its remedy in one line."""
     keys, key = _keys(problem), _key_of(problem)
-    prefix = f"{key}: " if key else ""
     kind, context = problem["type"], problem.get("ctx", {})
     if kind == "extra_forbidden":
         known = _keys_of(keys[:-1], problem["loc"], root)
         hint = f"known keys: {', '.join(known)}" if known else "remove it"
         if len(keys) > 1 and keys[-1] in root.model_fields:
-            return f"{key}: unknown key; write {keys[-1]} above the first [table] of the file"
+            return key, f"unknown key; write {keys[-1]} above the first [table] of the file"
         if keys[-1] == "diameter" and "radius" in known:
-            return f"{key}: unknown key; give radius = half the diameter"
-        return f"{key}: unknown key; {did_you_mean(keys[-1], known) or hint}"
+            return key, "unknown key; give radius = half the diameter"
+        return key, f"unknown key; {did_you_mean(keys[-1], known) or hint}"
     if kind == "missing":
-        what = f"the table [{key}]" if len(keys) == 1 else f'the key "{key}"'
-        return f"{what} is missing"
+        return "", (f"the table [{key}]" if len(keys) == 1 else f'the key "{key}"') + " is missing"
     if kind == "union_tag_not_found":
         kinds = ", ".join(f'"{kind}"' for kind in _KINDS)
-        return f"{key}.kind is missing; write one of {kinds}"
+        return "", f"{key}.kind is missing; write one of {kinds}"
     if kind == "union_tag_invalid":
-        return f"{key}.kind: {shown(context['tag'])} is not one of {context['expected_tags']}"
+        tag = f"{shown(context['tag'])} is not one of {context['expected_tags']}"
+        return f"{key}.kind", tag
     if kind == "value_error":
-        return f"{prefix}{context['error']}"
+        return key, str(context["error"])
     should_be = _WORDS.get(kind, problem["msg"].removeprefix("Input should be "))
-    return f"{prefix}{shown(problem['input'])} should be {should_be}"
+    return key, f"{shown(problem['input'])} should be {should_be}"
 
 
-def _keys_of(path: list[str], loc: tuple[Any, ...], root: type[Table]) -> list[str]:
+def _keys_of(path: list[str], loc: tuple[Any, ...], root: type[BaseModel]) -> list[str]:
     """The valid keys of the table at `path`, as written in the file."""
-    model = _table_at(path, loc) if path else root
-    fields = {} if model is None else model.model_fields
-    return [field.alias or name for name, field in fields.items()]
-
-
-def _table_at(path: list[str], loc: tuple[Any, ...]) -> type[Table] | None:
-    """The class of the table at `path` in a case file; None if there is no such table."""
-    if path[:2] == ["roughness", "crop"]:
-        return CropTable
-    if path[0] == "roughness":
-        return MeasuredRoughness if "measured" in loc else GeneratedRoughness
-    field = Case.model_fields.get(path[0])
-    kinds = (field.annotation, *get_args(field.annotation)) if field else ()
-    tables = (kind for kind in kinds if isinstance(kind, type) and issubclass(kind, Table))
-    return next(tables, None)
+    for key in path:
+        fields = {rule.name: rule.field for rule in rules(root)}
+        tables = tables_in(fields[key]) if key in fields else []
+        if not tables:
+            return []
+        # The path of a pydantic error also contains the kind of a table of several kinds.
+        kinds = (next(rules(table)).words for table in tables)
+        of_kind = [table for table, words in zip(tables, kinds, strict=True) if {*words} & {*loc}]
+        root = (of_kind or tables)[0]
+    return [rule.name for rule in rules(root)]

@@ -29,7 +29,9 @@ _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*((?:{_UNIT})(?:\s*[*/·]\s*{_UNIT})*)
 LONGEST = 100
 
 
-class _Quantity(NamedTuple):
+class Quantity(NamedTuple):
+    """A physical quantity of the case file."""
+
     name: str
     example: str
     usual: str  # usual units; suggested for a unit that differs only in capital letters
@@ -37,17 +39,17 @@ class _Quantity(NamedTuple):
     bounds: tuple[float, float] = (-math.inf, math.inf)
 
 
-_QUANTITIES = {  # by SI unit
-    "m": _Quantity("a length", "0.25 um", "m cm mm um µm nm pm", (1e-12, 1e3)),
-    "Pa": _Quantity("a pressure", "750 MPa", "Pa kPa MPa GPa N/mm^2 N/mm2", (1.0, 1e15)),
-    "kg/m^3": _Quantity("a density", "7850 kg/m^3", "kg/m^3 kg/m3 g/cm^3 g/cm3", (1e-2, 1e6)),
-    "N": _Quantity("a force", "0.1 N", "N kN mN uN µN nN", (1e-15, 1e12)),
-    "J/m^2": _Quantity(
+QUANTITIES = {  # by SI unit
+    "m": Quantity("a length", "0.25 um", "m cm mm um µm nm pm", (1e-12, 1e3)),
+    "Pa": Quantity("a pressure", "750 MPa", "Pa kPa MPa GPa N/mm^2 N/mm2", (1.0, 1e15)),
+    "kg/m^3": Quantity("a density", "7850 kg/m^3", "kg/m^3 kg/m3 g/cm^3 g/cm3", (1e-2, 1e6)),
+    "N": Quantity("a force", "0.1 N", "N kN mN uN µN nN", (1e-15, 1e12)),
+    "J/m^2": Quantity(
         "a work of adhesion", "0.09 J/m^2", "J/m^2 J/m2 mJ/m^2 mJ/m2 N/m mN/m", (1e-9, 1e4)
     ),
-    "rad": _Quantity("an angle", "30 deg", "deg rad"),
-    "rad/s": _Quantity("a spin", "100 rad/s", "rad/s deg/s rpm"),
-    "m/s": _Quantity("a velocity", "0.5 m/s", "m/s cm/s mm/s um/s km/h", (1e-9, 1e4)),
+    "rad": Quantity("an angle", "30 deg", "deg rad"),
+    "rad/s": Quantity("a spin", "100 rad/s", "rad/s deg/s rpm"),
+    "m/s": Quantity("a velocity", "0.5 m/s", "m/s cm/s mm/s um/s km/h", (1e-9, 1e4)),
 }
 # Names of units of angle; the unit of a spin must contain one of them.
 _TURNS = ("radian", "degree", "turn", "revolution")
@@ -64,13 +66,13 @@ def unit_factors() -> dict[str, dict[str, float]]:
     """The usual units of each SI unit, in this unit: `unit_factors()["m"]["um"]` is 1e-6."""
     return {
         si: {name: read_quantity(f"1 {name}", si) for name in kind.usual.split()}
-        for si, kind in _QUANTITIES.items()
+        for si, kind in QUANTITIES.items()
     }
 
 
 def read_quantity(value: object, unit: str) -> float:
     """Convert `value`, such as "500 um", to the SI `unit`. Raises `ValueError`."""
-    example = f'write for example "{_QUANTITIES[unit].example}"'
+    example = f'write for example "{QUANTITIES[unit].example}"'
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         raise ValueError(f"{shown(value)} has no unit; {example}")
     if not isinstance(value, str):
@@ -86,7 +88,7 @@ def read_quantity(value: object, unit: str) -> float:
         factor = float(quantity.m_as(unit))
     except _UNIT_ERRORS as error:
         known = isinstance(error, pint.DimensionalityError)
-        problem = f"is not {_QUANTITIES[unit].name}" if known else "has an unknown unit"
+        problem = f"is not {QUANTITIES[unit].name}" if known else "has an unknown unit"
         remedy = _other_case(match[2], unit) or example
         raise ValueError(f"{shown(value)} {problem}; {remedy}") from None
     if unit == "rad/s" and not any(word in str(quantity.units) for word in _TURNS):
@@ -115,7 +117,7 @@ def scaled(value: str, factor: float, digits: int = 17) -> str:
 
 def _other_case(name: str, unit: str) -> str | None:
     """Suggest a usual unit if `name` differs from it only in capital letters ("gpa")."""
-    usual = _QUANTITIES[unit].usual.split()
+    usual = QUANTITIES[unit].usual.split()
     alike = (word for word in usual if word.lower() == name.lower() and word != name)
     return next((f"did you mean {word}?" for word in alike), None)
 
@@ -129,7 +131,7 @@ def read_positive(value: Any, unit: str, *, or_zero: bool = False) -> float:
         raise ValueError(f"{shown(value)} must not be negative")
     if result <= 0:
         raise ValueError(f"{shown(value)} must be greater than zero")
-    low, high = _QUANTITIES[unit].bounds
+    low, high = QUANTITIES[unit].bounds
     if not low <= result <= high:
         match = _QUANTITY.fullmatch(value)
         hint = _other_case(match[2], unit) if match else None
@@ -164,11 +166,6 @@ class Unit:
         return core_schema.no_info_before_validator_function(
             lambda value: self.read(value, self.si), handler(source)
         )
-
-    @property
-    def quantity(self) -> str:
-        """Name of the quantity, such as "length"."""
-        return _QUANTITIES[self.si].name.split(" ", 1)[1]
 
 
 Length = Annotated[float, Unit("m")]

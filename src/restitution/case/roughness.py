@@ -128,7 +128,7 @@ class GeneratedRoughness(Table):
     kind: Annotated[
         RoughnessKind,
         Key(
-            '`"exponential"` or `"gaussian"` autocorrelation, or `"self-affine"`',
+            "kind of the autocorrelation or of the spectrum",
             label="Roughness",
             empty="smooth",
         ),
@@ -171,7 +171,7 @@ class GeneratedRoughness(Table):
     rolloff: Annotated[
         Length | None,
         Key(
-            "self-affine: wavelength above which the spectrum is flat",
+            "wavelength above which the spectrum is flat",
             default="size of the grid",
             label="Roll-off wavelength",
             slider=(1e-8, 1e-4),
@@ -238,7 +238,7 @@ class MeasuredRoughness(Table):
 
     kind: Annotated[
         Literal["measured"],
-        Key('`"measured"`', choices=lambda: {"measured": "measured: a scan"}),
+        Key("a scan", choices=lambda: {"measured": "measured: a scan"}),
     ]
     file: Annotated[
         Annotated[str, Field(min_length=1)],
@@ -313,8 +313,8 @@ class MeasuredRoughness(Table):
     detrend: Annotated[
         Levelling,
         Key(
-            '`"center"`, `"tilt"` (plane) or `"curvature"` (paraboloid), fitted to the part of the '
-            "scan that is used",
+            "what is subtracted: the mean, a plane or a paraboloid, fitted to the part of the scan "
+            "that is used",
             label="Subtract",
             empty="nothing",
             initial="curvature",
@@ -323,7 +323,7 @@ class MeasuredRoughness(Table):
     extend: Annotated[
         Extension | None,
         Key(
-            'for a grid larger than the scan: `"twin"` or `"mirror"`, see below',
+            "for a grid larger than the scan, see below",
             label="Extend the scan",
             empty="no",
             more=True,
@@ -332,7 +332,7 @@ class MeasuredRoughness(Table):
     seed: Annotated[
         Seed | None,
         Key(
-            'with `extend = "twin"`: seed of the random numbers',
+            "seed of the random numbers",
             default="required for a twin",
             label="Seed of the twin",
             slider=(0, 100),

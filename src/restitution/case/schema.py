@@ -260,8 +260,8 @@ class ImpactTable(Series[Velocity]):
         _Many,
         Key(
             "spin of the first body before the impact, or a list of two values, one for each body; "
-            "positive in the sense in which friction turns a body without spin. With a spin and no "
-            "angle the impacts are head-on",
+            "positive in the sense in which friction turns a body without spin; not in Hz. With a "
+            "spin and no angle the impacts are head-on",
             default='`"0 rad/s"`',
             label="Spin before impact",
             hint="one value for the first body, or two values for both bodies",
