@@ -7,15 +7,29 @@ command line prints the message in red on one line and exits with status 1.
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Self
 
 if TYPE_CHECKING:
     from pydantic import ValidationError
 
 
 class RestitutionError(Exception):
-    """A problem with the input or the computation; the message says what to change."""
+    """A problem with the input or the computation; the message says what to change.
+
+    The message begins with the name of the `argument` at fault, if this is known.
+    """
+
+    def __init__(self, *words: object, argument: str = "") -> None:
+        super().__init__(*((f"{argument}: {words[0]}",) if argument else words))
+        self.argument = argument
+
+    def renamed(self, keys: Mapping[str, str]) -> Self:
+        """The same error with the key of a case file (`keys`) in place of the argument."""
+        if self.argument not in keys:
+            return self
+        text = str(self).removeprefix(f"{self.argument}: ")
+        return type(self)(text, argument=keys[self.argument])
 
 
 class CaseError(RestitutionError, ValueError):

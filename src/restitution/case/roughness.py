@@ -118,8 +118,7 @@ def _naming(keys: Mapping[str, str]) -> Iterator[None]:
     except RefusedSurfaceError as error:
         raise SurfaceError(f"{error.fact}; {_REMEDIES[error.code]}") from None
     except SurfaceError as error:
-        argument, colon, text = str(error).partition(":")
-        raise SurfaceError(keys.get(argument, argument) + colon + text) from None
+        raise error.renamed(keys) from None
 
 
 class GeneratedRoughness(Table):

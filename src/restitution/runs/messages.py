@@ -144,10 +144,9 @@ def naming_keys(
             found = Finding(found.code, {**found.values, "needed": edges})
         raise DomainError(message(found, prescribed)) from error
     except (DomainError, NotConvergedError) as error:
-        argument, _, text = str(error).partition(":")
-        if argument not in _KEYS:
+        if error.argument not in _KEYS:
             raise
-        raise type(error)(f"{_KEYS[argument]}:{text}") from error
+        raise error.renamed(_KEYS) from error
 
 
 def message(found: Finding, prescribed: str = "indentation") -> str:
