@@ -12,23 +12,19 @@ from restitution.app.form import form
 from restitution.case.bodies import InterfaceTable
 from restitution.case.case import Case
 from restitution.case.case_file import in_words
-from restitution.case.rulebook import Key, rules, tables_in
+from restitution.case.rulebook import Input, key, rules, tables_in
 
 PAGE = Path(__file__).parents[2] / "docs" / "case-file.md"
 
 
 class Interface(InterfaceTable):
-    rolling_friction: Annotated[
-        Annotated[float, Field(ge=0, le=1)] | None,
-        Key(
-            "coefficient of rolling friction",
-            label="Rolling friction µ_r",
-            hint="of both bodies",
-            slider=(0, 0.5),
-            only=("adhesion", "cohesive"),
-            otherwise='rolling_friction: {value} needs adhesion = "cohesive"',
-        ),
-    ] = None
+    rolling_friction: Annotated[float, Field(ge=0, le=1)] | None = key(
+        None,
+        "coefficient of rolling friction",
+        only=("adhesion", "cohesive"),
+        otherwise='rolling_friction: {value} needs adhesion = "cohesive"',
+        page=Input("Rolling friction µ_r", hint="of both bodies", slider=(0, 0.5)),
+    )
 
 
 class Extended(Case):

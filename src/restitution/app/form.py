@@ -10,7 +10,7 @@ from restitution.case.bodies import FROM_LIBRARY
 from restitution.case.case import Case
 from restitution.case.materials import Material, materials
 from restitution.case.quantities import unit_factors
-from restitution.case.rulebook import Key, Rule, rules, tables_in
+from restitution.case.rulebook import Input, Rule, rules, tables_in
 from restitution.dem.export import CODES
 from restitution.display import quantity
 
@@ -92,7 +92,7 @@ def _groups(case: type[Case]) -> list[Group]:
 
 
 def _is_shown(rule: Rule) -> bool:
-    return bool(rule.key.label) and not tables_in(rule.field)
+    return rule.key.page is not None and not tables_in(rule.field)
 
 
 def _table(case: type[Case], name: str, when: tuple[str, ...] = ()) -> tuple[Field, ...]:
@@ -120,32 +120,32 @@ def _fields(table: list[Rule], name: str, when: tuple[str, ...]) -> Iterator[Fie
 
 
 def _field(rule: Rule, name: str, when: tuple[str, ...] = ()) -> Field:
-    key, default = rule.key, rule.field.default
-    low, high = key.slider or (None, None)
+    page, default = rule.key.page or Input(""), rule.field.default
+    low, high = page.slider or (None, None)
     choices = [choice for choice in rule.choices.items() if choice[0] != default]
     return Field(
         name,
-        key.label,
+        page.label,
         rule.unit.si if rule.unit else "",
         low,
         high,
-        key.logarithmic or rule.unit is not None,
+        page.logarithmic or rule.unit is not None,
         rule.kinds == {int},
-        (("", key.empty), *choices) if choices else (),
+        (("", page.empty), *choices) if choices else (),
         when,
-        key.initial,
-        key.hint,
-        key.more,
+        page.initial,
+        page.hint,
+        page.more,
     )
 
 
 def _span(case: type[Case], name: str) -> Iterator[Field]:
-    """The fields of a table that prescribes depths."""
-    table: Key = next(rule.key for rule in rules(case) if rule.name == name)
-    ends = iter(table.initial) if isinstance(table.initial, tuple) else iter(())
-    low, high = table.slider or (None, None)
+    """The fields of a table that prescribes depths; {} in a label is the label of the table."""
+    page = next(rule.key.page for rule in rules(case) if rule.name == name) or Input("")
+    ends = iter(page.initial) if isinstance(page.initial, tuple) else iter(())
+    low, high = page.slider or (None, None)
     for field in _table(case, name, ("depths", name)):
         if "{}" in field.label:
-            label = field.label.format(table.label)
+            label = field.label.format(page.label)
             field = replace(field, label=label, low=low, high=high, initial=next(ends))
         yield field

@@ -19,7 +19,7 @@ from restitution.case.quantities import (
     Unit,
     read_positive,
 )
-from restitution.case.rulebook import Key, rules
+from restitution.case.rulebook import Input, key, rules
 from restitution.case.schema import Table
 from restitution.contact.bodies import Body
 from restitution.contact.contact import (
@@ -40,64 +40,47 @@ _STRENGTHS = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*(?:\*\s*)?Y\s*")
 class BodyTable(Table):
     """The tables `[first]` and `[second]`; a name such as "steel" stands for a wall of steel."""
 
-    material: Annotated[
-        str | None,
-        Key(
-            "a name in the [library](materials.md). The library then provides those of the "
-            "following keys that you do not give",
-            label="Material",
+    material: str | None = key(
+        None,
+        "a name in the [library](materials.md). The library then provides those of the "
+        "following keys that you do not give",
+        page=Input(
+            "Material",
             empty="own values",
             choices=lambda: {key: one.name for key, one in materials().items()},
         ),
-    ] = None
+    )
     radius: Annotated[
-        Length | None,
-        BeforeValidator(lambda value: None if value == "flat" else value),
-        Key(
-            'radius of the particle itself (not the reduced radius R*), or `"flat"` for a wall; '
-            "one body must be a sphere, unless the grid is periodic",
-            label="Radius",
-            hint='a length, or "flat" for a wall',
-            slider=(1e-6, 1e-2),
-            initial="flat",
+        Length | None, BeforeValidator(lambda value: None if value == "flat" else value)
+    ] = key(
+        ...,
+        'radius of the particle itself (not the reduced radius R*), or `"flat"` for a wall; '
+        "one body must be a sphere, unless the grid is periodic",
+        page=Input(
+            "Radius", hint='a length, or "flat" for a wall', slider=(1e-6, 1e-2), initial="flat"
         ),
-    ]
-    youngs_modulus: Annotated[
-        Pressure,
-        Key("Young's modulus E", label="Young's modulus E", slider=(1e6, 1e12), more=True),
-    ]
-    poissons_ratio: Annotated[
-        PoissonsRatio,
-        Key("Poisson's ratio ν", label="Poisson's ratio ν", slider=(0.0, 0.5), more=True),
-    ]
-    density: Annotated[
-        Density | None,
-        Key(
-            "needed to compute impact velocities; a wall does not need it",
-            label="Density",
-            slider=(100, 2e4),
-            more=True,
-        ),
-    ] = None
-    yield_strength: Annotated[
-        Pressure | None,
-        Key(
-            "yield strength Y from a tensile test. The keys of `[interface]` below say how it is "
-            "used",
-            label="Yield strength Y",
-            slider=(1e6, 1e11),
-            more=True,
-        ),
-    ] = None
-    hardness: Annotated[
-        Pressure | None,
-        Key(
-            "indentation hardness, used where the yield strength is unknown",
-            label="Hardness H",
-            slider=(1e6, 1e11),
-            more=True,
-        ),
-    ] = None
+    )
+    youngs_modulus: Pressure = key(
+        ..., "Young's modulus E", page=Input("Young's modulus E", slider=(1e6, 1e12), more=True)
+    )
+    poissons_ratio: PoissonsRatio = key(
+        ..., "Poisson's ratio ν", page=Input("Poisson's ratio ν", slider=(0.0, 0.5), more=True)
+    )
+    density: Density | None = key(
+        None,
+        "needed to compute impact velocities; a wall does not need it",
+        page=Input("Density", slider=(100, 2e4), more=True),
+    )
+    yield_strength: Pressure | None = key(
+        None,
+        "yield strength Y from a tensile test. The keys of `[interface]` below say how it is used",
+        page=Input("Yield strength Y", slider=(1e6, 1e11), more=True),
+    )
+    hardness: Pressure | None = key(
+        None,
+        "indentation hardness, used where the yield strength is unknown",
+        page=Input("Hardness H", slider=(1e6, 1e11), more=True),
+    )
 
     @model_validator(mode="before")
     @classmethod
@@ -201,129 +184,107 @@ class Yielding:
 class InterfaceTable(Table):
     """The table `[interface]`. By default, the softer body yields and the bodies do not adhere."""
 
-    yield_strength: Annotated[
-        Pressure | None,
-        Key(
-            "Y from a tensile test. The upper limit of the contact pressure starts at 1.6 Y and "
-            "grows with deformation. If only the hardness of the softer body is known, the contact "
-            "yields at this hardness; if neither is known, the case is refused",
-            default="that of the softer body",
-            label="Yield strength Y",
+    yield_strength: Pressure | None = key(
+        None,
+        "Y from a tensile test. The upper limit of the contact pressure starts at 1.6 Y and "
+        "grows with deformation. If only the hardness of the softer body is known, the contact "
+        "yields at this hardness; if neither is known, the case is refused",
+        default="that of the softer body",
+        page=Input(
+            "Yield strength Y",
             hint="from a tensile test; if empty, the Y of the softer body",
             slider=(1e6, 1e11),
         ),
-    ] = None
-    tangent_modulus: Annotated[
-        Pressure | None,
-        Key(
-            "E_t, the slope of the tensile stress–strain curve after yield, for metals that "
-            "harden; needs a yield strength",
-            default='`"0 Pa"`',
-            label="Tangent modulus",
+    )
+    tangent_modulus: Pressure | None = key(
+        None,
+        "E_t, the slope of the tensile stress–strain curve after yield, for metals that "
+        "harden; needs a yield strength",
+        default='`"0 Pa"`',
+        page=Input(
+            "Tangent modulus",
             hint="slope of the stress-strain curve after yield",
             slider=(1e6, 1e11),
             more=True,
         ),
-    ] = None
+    )
     yield_pressure: Annotated[
-        float | YieldRule | None,
-        Unit("Pa", lambda value, _: _pressure_or_rule(value)),
-        Key(
-            "a constant upper limit p_y of the contact pressure, such as a hardness, instead of a "
-            "yield strength. A rule for the softer body may be given instead of a value: "
-            '`"2.8 Y"` or `"1.6 Y"` (multiples of its yield strength, or its hardness if it has no '
-            'yield strength), or `"hardness"`; see [which to use](materials.md). `"elastic"` '
-            "switches yielding off",
-            label="Constant yield pressure",
+        float | YieldRule | None, Unit("Pa", lambda value, _: _pressure_or_rule(value))
+    ] = key(
+        None,
+        "a constant upper limit p_y of the contact pressure, such as a hardness, instead of a "
+        "yield strength. A rule for the softer body may be given instead of a value: "
+        '`"2.8 Y"` or `"1.6 Y"` (multiples of its yield strength, or its hardness if it has no '
+        'yield strength), or `"hardness"`; see [which to use](materials.md). `"elastic"` '
+        "switches yielding off",
+        page=Input(
+            "Constant yield pressure",
             hint='replaces Y; a pressure, "2.8 Y", "hardness" (of the softer body) or "elastic"',
             slider=(1e6, 1e11),
         ),
-    ] = None
-    plasticity: Annotated[
-        Plasticity | None,
-        Key(
-            'the model of plasticity; with a yield pressure it may also be `"truncated"` '
-            "(Thornton and Ning); see [method](method.md)",
-            default='`"expanding-cavity"` with a yield strength, `"equilibrium"` with a yield '
-            "pressure",
-            label="Plasticity",
-            empty="chosen from the values above",
-            more=True,
-        ),
-    ] = None
-    work_of_adhesion: Annotated[
-        SurfaceEnergy | None,
-        Key(
-            'w; see [adhesion](adhesion.md). `"library"` takes it from the [surface '
-            "energies](materials.md#work-of-adhesion) of the two materials. If you leave it out "
-            "and the case includes velocities at which adhesion would matter, a warning states the "
-            "velocity below which it matters",
-            default='`"0 J/m^2"`',
-            label="Work of adhesion w",
-            hint="if empty, no adhesion",
-            slider=(1e-4, 1.0),
-        ),
-    ] = None
-    adhesion: Annotated[
-        Adhesion | None,
-        Key(
-            'range of the attraction: `"cohesive"` (Lennard-Jones, with the range z₀ = '
-            '`equilibrium_separation`) or `"jkr"` (zero range). The default is `"cohesive"` if the '
-            "size of a cell is at most 0.3 times the smaller of E\\*z₀²/w and √(R\\*z₀), and "
-            'otherwise `"jkr"` with a warning and a `model_error`; see '
-            "[adhesion](adhesion.md#the-range-of-the-attraction)",
-            default="depends on the grid",
-            label="Range of adhesion",
-            empty="chosen from the grid",
-            more=True,
-        ),
-    ] = None
-    approach: Annotated[
-        Approach,
-        Key(
-            "how adhesion acts during [loading](adhesion.md#three-ways-to-approach). "
-            'Alternatives are `"hertzian"` '
-            '(adhesion during unloading only) and `"pull-increments"` (the method of the paper)',
-            label="Approach",
-            empty="equilibrium",
-            more=True,
-            only=("adhesion", "", "jkr"),
-            otherwise='approach: "{value}" belongs to adhesion = "jkr"; cohesive bodies always '
-            "attract each other on approach, so leave approach out",
-        ),
-    ] = "equilibrium"
-    detachment: Annotated[
-        Detachment,
-        Key(
-            "criterion for [releasing a node](adhesion.md#when-a-node-is-released). "
-            'The alternative is `"pohrt-popov"` '
-            "(the criterion of the paper)",
-            label="Detachment",
-            empty="crack-closure",
-            more=True,
-            only=("adhesion", "", "jkr"),
-            otherwise='detachment: "{value}" belongs to adhesion = "jkr"; a cohesive contact has '
-            "no detachment criterion, so leave detachment out",
-        ),
-    ] = "crack-closure"
-    equilibrium_separation: Annotated[
-        Length,
-        Key(
-            'z₀, the range of the attraction with `adhesion = "cohesive"`. It also enters the '
-            "Tabor parameter",
-        ),
-    ] = EQUILIBRIUM_SEPARATION
-    friction: Annotated[
-        Annotated[float, Field(ge=0, le=MOST_FRICTION)] | None,
-        Key(
-            "coefficient of friction µ for [oblique impacts](oblique.md) and for exports to DEM "
-            "codes; the normal contact does not depend on it",
-            label="Coefficient of friction µ",
+    )
+    plasticity: Plasticity | None = key(
+        None,
+        'the model of plasticity; with a yield pressure it may also be `"truncated"` '
+        "(Thornton and Ning); see [method](method.md)",
+        default='`"expanding-cavity"` with a yield strength, `"equilibrium"` with a yield pressure',
+        page=Input("Plasticity", more=True, empty="chosen from the values above"),
+    )
+    work_of_adhesion: SurfaceEnergy | None = key(
+        None,
+        'w; see [adhesion](adhesion.md). `"library"` takes it from the [surface '
+        "energies](materials.md#work-of-adhesion) of the two materials. If you leave it out "
+        "and the case includes velocities at which adhesion would matter, a warning states the "
+        "velocity below which it matters",
+        default='`"0 J/m^2"`',
+        page=Input("Work of adhesion w", hint="if empty, no adhesion", slider=(1e-4, 1.0)),
+    )
+    adhesion: Adhesion | None = key(
+        None,
+        'range of the attraction: `"cohesive"` (Lennard-Jones, with the range z₀ = '
+        '`equilibrium_separation`) or `"jkr"` (zero range). The default is `"cohesive"` if the '
+        "size of a cell is at most 0.3 times the smaller of E\\*z₀²/w and √(R\\*z₀), and "
+        'otherwise `"jkr"` with a warning and a `model_error`; see '
+        "[adhesion](adhesion.md#the-range-of-the-attraction)",
+        default="depends on the grid",
+        page=Input("Range of adhesion", more=True, empty="chosen from the grid"),
+    )
+    approach: Approach = key(
+        "equilibrium",
+        "how adhesion acts during [loading](adhesion.md#three-ways-to-approach). "
+        'Alternatives are `"hertzian"` '
+        '(adhesion during unloading only) and `"pull-increments"` (the method of the paper)',
+        only=("adhesion", "", "jkr"),
+        otherwise='approach: "{value}" belongs to adhesion = "jkr"; cohesive bodies always '
+        "attract each other on approach, so leave approach out",
+        page=Input("Approach", more=True, empty="equilibrium"),
+    )
+    detachment: Detachment = key(
+        "crack-closure",
+        "criterion for [releasing a node](adhesion.md#when-a-node-is-released). "
+        'The alternative is `"pohrt-popov"` '
+        "(the criterion of the paper)",
+        only=("adhesion", "", "jkr"),
+        otherwise='detachment: "{value}" belongs to adhesion = "jkr"; a cohesive contact has '
+        "no detachment criterion, so leave detachment out",
+        page=Input("Detachment", more=True, empty="crack-closure"),
+    )
+    equilibrium_separation: Length = key(
+        EQUILIBRIUM_SEPARATION,
+        'z₀, the range of the attraction with `adhesion = "cohesive"`. It also enters the '
+        "Tabor parameter",
+    )
+    friction: Annotated[float, Field(ge=0, le=MOST_FRICTION)] | None = key(
+        None,
+        "coefficient of friction µ for [oblique impacts](oblique.md) and for exports to DEM "
+        "codes; the normal contact does not depend on it",
+        page=Input(
+            "Coefficient of friction µ",
             hint="for oblique impacts and exports",
             slider=(0.0, 1.0),
             more=True,
         ),
-    ] = None
+    )
 
     @model_validator(mode="after")
     def _one_model(self) -> InterfaceTable:

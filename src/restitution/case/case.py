@@ -13,7 +13,7 @@ from restitution.case.bodies import BodyTable, InterfaceTable, Yielding
 from restitution.case.materials import Property, with_library_adhesion, work_of_adhesion
 from restitution.case.quantities import Force, Length, Pressure
 from restitution.case.roughness import GeneratedRoughness, MeasuredRoughness, Roughness
-from restitution.case.rulebook import Key
+from restitution.case.rulebook import Input, key
 from restitution.case.schema import GridTable, ImpactTable, Series, Table, UnloadingTable
 from restitution.contact.bodies import Pair
 from restitution.contact.cohesive import coarsest_spacing
@@ -31,21 +31,18 @@ DEPTHS = ("indentation", "load", "impact", "pressure")
 class Case(Table):
     """The content of a case file, in SI units."""
 
-    title: Annotated[
-        str, Key("a text that appears in all results of the case", default="none", label="Title")
-    ] = ""
-    total_error: Annotated[
-        bool,
-        Key("`false` leaves out the additional curves that the [total error](error.md) needs"),
-    ] = True
-    maps: Annotated[
-        Literal["deepest", "all"],
-        Key(
-            '`"all"` stores maps of pressure and plastic displacement at every depth in '
-            "[`maps.nc`](results.md#maps-of-every-depth). They take up to 16 bytes of memory per "
-            "node and depth; `check` states the size"
-        ),
-    ] = "deepest"
+    title: str = key(
+        "", "a text that appears in all results of the case", default="none", page=Input("Title")
+    )
+    total_error: bool = key(
+        True, "`false` leaves out the additional curves that the [total error](error.md) needs"
+    )
+    maps: Literal["deepest", "all"] = key(
+        "deepest",
+        '`"all"` stores maps of pressure and plastic displacement at every depth in '
+        "[`maps.nc`](results.md#maps-of-every-depth). They take up to 16 bytes of memory per "
+        "node and depth; `check` states the size",
+    )
     first: BodyTable
     second: BodyTable | None = None
     interface: InterfaceTable = InterfaceTable()
@@ -54,18 +51,15 @@ class Case(Table):
         BeforeValidator(lambda value: tuple(value) if isinstance(value, list) else (value,)),
     ] = ()
     grid: GridTable = GridTable()
-    indentation: Annotated[
-        Series[Length] | None,
-        Key(label="Indentation", slider=(1e-10, 1e-4), initial=("20 nm", "2 um")),
-    ] = None
-    load: Annotated[
-        Series[Force] | None,
-        Key(label="Load", slider=(1e-9, 1e2), initial=("1 mN", "0.3 N")),
-    ] = None
-    impact: Annotated[
-        ImpactTable | None,
-        Key(label="Velocity", slider=(1e-4, 10.0), initial=("10 mm/s", "0.3 m/s")),
-    ] = None
+    indentation: Series[Length] | None = key(
+        None, page=Input("Indentation", slider=(1e-10, 1e-4), initial=("20 nm", "2 um"))
+    )
+    load: Series[Force] | None = key(
+        None, page=Input("Load", slider=(1e-9, 1e2), initial=("1 mN", "0.3 N"))
+    )
+    impact: ImpactTable | None = key(
+        None, page=Input("Velocity", slider=(1e-4, 10.0), initial=("10 mm/s", "0.3 m/s"))
+    )
     pressure: Series[Pressure] | None = None
     unloading: UnloadingTable = UnloadingTable()
 

@@ -12,7 +12,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from restitution.case import needs
 from restitution.case.quantities import Angle, Length, Position
-from restitution.case.rulebook import Key
+from restitution.case.rulebook import Input, Key, key
 from restitution.case.schema import PairOf, Table
 from restitution.errors import SurfaceError, shown
 from restitution.numerics.grid import Grid
@@ -96,9 +96,11 @@ def _unit_of_length(value: str) -> str:
 Realisations = Annotated[int, Field(ge=1, le=MOST_REALISATIONS)]
 REALISATIONS = Key(
     "number of twins, or of places of the scan",
-    label="Surfaces",
-    hint="the curve is the mean over them; while a slider moves, only the first is computed",
-    slider=(1, 16),
+    page=Input(
+        "Surfaces",
+        hint="the curve is the mean over them; while a slider moves, only the first is computed",
+        slider=(1, 16),
+    ),
 )
 Seed = Annotated[int, Field(ge=0, lt=2**63)]
 
@@ -124,90 +126,66 @@ def _naming(keys: Mapping[str, str]) -> Iterator[None]:
 class GeneratedRoughness(Table):
     """The table `[roughness]` with `kind` exponential, gaussian or self-affine."""
 
-    kind: Annotated[
-        RoughnessKind,
-        Key(
-            "kind of the autocorrelation or of the spectrum",
-            label="Roughness",
-            empty="smooth",
-        ),
-    ]
-    rms: Annotated[
-        Length, Key("Rq, met exactly", label="Rq", slider=(1e-9, 1e-5), initial="0.1 um")
-    ]
-    correlation_length: Annotated[
-        Annotated[tuple[Length, Length], PairOf] | None,
-        Key(
-            "distance at which the autocorrelation has fallen to 10 %; one value, or two (along "
-            "the lay and across it); at least one grid spacing, and at most half the size of the "
-            "grid",
-            default="required unless self-affine",
-            label="Correlation length",
-            slider=(1e-8, 1e-4),
-            initial="2 um",
-            only=_kinds_with("correlation_length"),
-        ),
-    ] = None
-    lay: Annotated[
-        Angle,
-        Key(
-            "direction of the first correlation length, from the x axis",
-            default='`"0 deg"`',
-            only=_kinds_with("lay"),
-        ),
-    ] = 0.0
-    hurst: Annotated[
-        float | None,
-        Key(
-            "Hurst exponent H, above 0 and up to 1: the power spectral density falls as q^−2(H+1)",
-            default="required if self-affine",
-            label="Hurst exponent",
-            slider=(0.05, 0.99),
-            initial=0.8,
-            only=_kinds_with("hurst"),
-        ),
-    ] = None
-    rolloff: Annotated[
-        Length | None,
-        Key(
-            "wavelength above which the spectrum is flat",
-            default="size of the grid",
-            label="Roll-off wavelength",
-            slider=(1e-8, 1e-4),
-            initial="10 um",
-            only=_kinds_with("rolloff"),
-        ),
-    ] = None
-    shortest: Annotated[
-        Length | None,
-        Key(
-            "waves shorter than this are left out",
-            default="two grid spacings",
-            label="Shortest wavelength",
-            slider=(1e-9, 1e-5),
-            more=True,
-        ),
-    ] = None
-    skewness: Annotated[float, Key("skewness of the heights")] = 0.0
-    kurtosis: Annotated[
-        float,
-        Key("kurtosis of the heights (normal distribution: 3); at least skewness² + 1.1"),
-    ] = 3.0
-    periodic: Annotated[bool, Key("whether the heights at opposite edges of the surface match")] = (
-        True
+    kind: RoughnessKind = key(
+        ...,
+        "kind of the autocorrelation or of the spectrum",
+        page=Input("Roughness", empty="smooth"),
     )
-    seed: Annotated[
-        Seed, Key("seed of the random numbers", label="Seed", slider=(0, 100), initial=1)
-    ]
-    realisations: Annotated[
-        Realisations,
+    rms: Length = key(
+        ..., "Rq, met exactly", page=Input("Rq", slider=(1e-9, 1e-5), initial="0.1 um")
+    )
+    correlation_length: Annotated[tuple[Length, Length], PairOf] | None = key(
+        None,
+        "distance at which the autocorrelation has fallen to 10 %; one value, or two (along "
+        "the lay and across it); at least one grid spacing, and at most half the size of the "
+        "grid",
+        default="required unless self-affine",
+        only=_kinds_with("correlation_length"),
+        page=Input("Correlation length", slider=(1e-8, 1e-4), initial="2 um"),
+    )
+    lay: Angle = key(
+        0.0,
+        "direction of the first correlation length, from the x axis",
+        default='`"0 deg"`',
+        only=_kinds_with("lay"),
+    )
+    hurst: float | None = key(
+        None,
+        "Hurst exponent H, above 0 and up to 1: the power spectral density falls as q^−2(H+1)",
+        default="required if self-affine",
+        only=_kinds_with("hurst"),
+        page=Input("Hurst exponent", slider=(0.05, 0.99), initial=0.8),
+    )
+    rolloff: Length | None = key(
+        None,
+        "wavelength above which the spectrum is flat",
+        default="size of the grid",
+        only=_kinds_with("rolloff"),
+        page=Input("Roll-off wavelength", slider=(1e-8, 1e-4), initial="10 um"),
+    )
+    shortest: Length | None = key(
+        None,
+        "waves shorter than this are left out",
+        default="two grid spacings",
+        page=Input("Shortest wavelength", slider=(1e-9, 1e-5), more=True),
+    )
+    skewness: float = key(0.0, "skewness of the heights")
+    kurtosis: float = key(
+        3.0, "kurtosis of the heights (normal distribution: 3); at least skewness² + 1.1"
+    )
+    periodic: bool = key(True, "whether the heights at opposite edges of the surface match")
+    seed: Seed = key(
+        ..., "seed of the random numbers", page=Input("Seed", slider=(0, 100), initial=1)
+    )
+    realisations: Realisations = key(
+        1,
         replace(
             REALISATIONS,
             meaning="number of surfaces, with the seeds `seed`, `seed` + 1, …: `run` then computes "
             "the mean, the standard deviation and the confidence interval of COR, see "
             "[results](results.md)",
         ),
-    ] = 1
+    )
 
     def variant(self, number: int) -> Self:
         """Return the table of a single surface, with the seed increased by `number`."""
@@ -235,124 +213,95 @@ class CropTable(Table):
 class MeasuredRoughness(Table):
     """The table `[roughness]` with `kind = "measured"`."""
 
-    kind: Annotated[
-        Literal["measured"],
-        Key("a scan", choices=lambda: {"measured": "measured: a scan"}),
-    ]
-    file: Annotated[
-        Annotated[str, Field(min_length=1)],
-        Key("topography file", label="Scan", hint="drop a file onto the page"),
-    ]
-    channel: Annotated[
-        Annotated[int, Field(ge=0)] | None,
-        Key(
-            "number of the height channel",
-            default="the reader's default",
-            label="Channel of the file",
+    kind: Literal["measured"] = key(
+        ..., "a scan", page=Input("", choices=lambda: {"measured": "measured: a scan"})
+    )
+    file: Annotated[str, Field(min_length=1)] = key(
+        ..., "topography file", page=Input("Scan", hint="drop a file onto the page")
+    )
+    channel: Annotated[int, Field(ge=0)] | None = key(
+        None,
+        "number of the height channel",
+        default="the reader's default",
+        page=Input("Channel of the file", more=True),
+    )
+    size: Annotated[tuple[Length, Length], PairOf] | None = key(
+        None,
+        "edge lengths in x and y (or one for both); they replace those in the file, with a "
+        "warning if these differ",
+        default="from the file",
+        page=Input("Edge lengths", hint="if the file lacks them, or is wrong", more=True),
+    )
+    height_unit: Annotated[str, AfterValidator(_unit_of_length)] | None = key(
+        None,
+        'unit of the heights: `"m"`, `"mm"`, `"um"`, `"nm"` or `"pm"`; it replaces the unit in '
+        "the file, with a warning if this differs",
+        default="from the file, or m",
+        page=Input(
+            "Unit of the heights",
             more=True,
-        ),
-    ] = None
-    size: Annotated[
-        Annotated[tuple[Length, Length], PairOf] | None,
-        Key(
-            "edge lengths in x and y (or one for both); they replace those in the file, with a "
-            "warning if these differ",
-            default="from the file",
-            label="Edge lengths",
-            hint="if the file lacks them, or is wrong",
-            more=True,
-        ),
-    ] = None
-    height_unit: Annotated[
-        Annotated[str, AfterValidator(_unit_of_length)] | None,
-        Key(
-            'unit of the heights: `"m"`, `"mm"`, `"um"`, `"nm"` or `"pm"`; it replaces the unit in '
-            "the file, with a warning if this differs",
-            default="from the file, or m",
-            label="Unit of the heights",
             empty="as in the file, or m",
-            more=True,
             choices=lambda: {unit: unit for unit in ("um", "nm", "mm", "m", "pm")},
         ),
-    ] = None
-    undefined: Annotated[
-        Literal["error", "interpolate"],
-        Key(
-            '`"interpolate"` fills undefined pixels harmonically, up to 20 % of the part that '
-            "`crop` selects",
-            label="Missing pixels",
-            empty="refuse",
-            more=True,
-        ),
-    ] = "error"
-    crop: Annotated[
-        CropTable,
-        Key(
-            '`{ x = ["-4 um", "5 um"], y = [...] }`: the part of the scan that is used, from a '
-            "first to a last `x` and `y` (`x` or `y` may be left out). The coordinates are those "
-            "of the map that `restitution surface` draws of the scan without `crop` (0 in the "
-            "middle of the scan). A range must not extend beyond the scan",
-            default="all",
-        ),
-    ] = CropTable()
-    outliers: Annotated[
-        Annotated[float, Field(gt=0)] | None,
-        Key(
-            "pixels whose height above a fitted paraboloid differs from the median of the 5 × 5 "
-            "pixels around them by more than this number of robust standard deviations are "
-            "replaced harmonically; 6 to 10 removes spikes and dust of up to 3 × 3 pixels, and up "
-            "to two slipped lines side by side",
-            label="Outlier threshold",
+    )
+    undefined: Literal["error", "interpolate"] = key(
+        "error",
+        '`"interpolate"` fills undefined pixels harmonically, up to 20 % of the part that '
+        "`crop` selects",
+        page=Input("Missing pixels", more=True, empty="refuse"),
+    )
+    crop: CropTable = key(
+        CropTable(),
+        '`{ x = ["-4 um", "5 um"], y = [...] }`: the part of the scan that is used, from a '
+        "first to a last `x` and `y` (`x` or `y` may be left out). The coordinates are those "
+        "of the map that `restitution surface` draws of the scan without `crop` (0 in the "
+        "middle of the scan). A range must not extend beyond the scan",
+        default="all",
+    )
+    outliers: Annotated[float, Field(gt=0)] | None = key(
+        None,
+        "pixels whose height above a fitted paraboloid differs from the median of the 5 × 5 "
+        "pixels around them by more than this number of robust standard deviations are "
+        "replaced harmonically; 6 to 10 removes spikes and dust of up to 3 × 3 pixels, and up "
+        "to two slipped lines side by side",
+        page=Input(
+            "Outlier threshold",
             hint="in standard deviations",
             slider=(3, 30),
             logarithmic=True,
             more=True,
         ),
-    ] = None
-    detrend: Annotated[
-        Levelling,
-        Key(
-            "what is subtracted: the mean, a plane or a paraboloid, fitted to the part of the scan "
-            "that is used",
-            label="Subtract",
-            empty="nothing",
-            initial="curvature",
-        ),
-    ] = "none"
-    extend: Annotated[
-        Extension | None,
-        Key(
-            "for a grid larger than the scan, see below",
-            label="Extend the scan",
-            empty="no",
-            more=True,
-        ),
-    ] = None
-    seed: Annotated[
-        Seed | None,
-        Key(
-            "seed of the random numbers",
-            default="required for a twin",
-            label="Seed of the twin",
-            slider=(0, 100),
-            initial=1,
-            only=("extend", "twin"),
-            otherwise='seed applies only to extend = "twin"; remove seed, or set place to select '
-            "another part of the scan",
-        ),
-    ] = None
-    place: Annotated[
-        Annotated[int, Field(ge=0, le=MOST_PLACES)],
-        Key(
-            "number of the point of the scan that lies in the middle of the contact. 0 is the "
-            "centre of the scan; the points 1, 2 … are distributed evenly over the scan. If the "
-            "grid extends beyond an edge of the scan, the mirror image of the scan continues it "
-            "there, and a warning says so",
-            only=("extend", "", "mirror"),
-            otherwise='place does not apply to extend = "twin"; remove place, or vary seed',
-        ),
-    ] = 0
-    realisations: Annotated[Realisations, REALISATIONS] = 1
+    )
+    detrend: Levelling = key(
+        "none",
+        "what is subtracted: the mean, a plane or a paraboloid, fitted to the part of the scan "
+        "that is used",
+        page=Input("Subtract", initial="curvature", empty="nothing"),
+    )
+    extend: Extension | None = key(
+        None,
+        "for a grid larger than the scan, see below",
+        page=Input("Extend the scan", more=True, empty="no"),
+    )
+    seed: Seed | None = key(
+        None,
+        "seed of the random numbers",
+        default="required for a twin",
+        only=("extend", "twin"),
+        otherwise='seed applies only to extend = "twin"; remove seed, or set place to select '
+        "another part of the scan",
+        page=Input("Seed of the twin", slider=(0, 100), initial=1),
+    )
+    place: Annotated[int, Field(ge=0, le=MOST_PLACES)] = key(
+        0,
+        "number of the point of the scan that lies in the middle of the contact. 0 is the "
+        "centre of the scan; the points 1, 2 … are distributed evenly over the scan. If the "
+        "grid extends beyond an edge of the scan, the mirror image of the scan continues it "
+        "there, and a warning says so",
+        only=("extend", "", "mirror"),
+        otherwise='place does not apply to extend = "twin"; remove place, or vary seed',
+    )
+    realisations: Realisations = key(1, REALISATIONS)
 
     @model_validator(mode="after")
     def _seeded(self) -> Self:

@@ -1,7 +1,6 @@
 """What the schema says of each key of the case file, for the page's form and the documentation.
 
-The `Key` in the annotation of a field and the other metadata of this field are the only place of
-these rules.
+The `key` of a field and its type are the only place of these rules.
 """
 
 from __future__ import annotations
@@ -12,37 +11,28 @@ from dataclasses import dataclass
 from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin
 
 from annotated_types import Ge, Gt, Le, Lt
-from pydantic import BaseModel
+from pydantic import BaseModel, Field
 from pydantic.fields import FieldInfo
 
 from restitution.case.quantities import Unit
 
 
 @dataclass(frozen=True)
-class Key:
-    """What people read about a key; the metadata of its field.
+class Input:
+    """The field of a key on the page of `restitution app`.
 
     Attributes:
-        meaning: Text for the documentation, in Markdown.
-        default: Default in words, where the schema does not show it.
-        label: Name of its field on the page of `restitution app`, which has no other keys.
-        hint: Text below this field.
-        slider: Ends of its slider, in the SI unit of the key.
+        label: Name of the field.
+        hint: Text below the field.
+        slider: Ends of the slider, in the SI unit of the key.
         logarithmic: Whether the slider of a number without unit is logarithmic, as all others are.
-        initial: Value with which the field first appears on the page; of a table, the first and
-            last depth.
+        initial: Value with which the field first appears; of a table, the first and last depth.
         more: Whether the field is in the section "More".
-        empty: Choice on the page that leaves the key out.
+        empty: Choice that leaves the key out.
         choices: Values of the key and their labels, where the schema does not list them.
-        only: Another key of the table, and the values with which it allows this key; "" if the
-            other key is left out.
-        otherwise: Error for other values; `{value}` is the value of this key. Without this text,
-            whoever uses the value refuses it.
     """
 
-    meaning: str = ""
-    default: str = ""
-    label: str = ""
+    label: str
     hint: str = ""
     slider: tuple[float, float] | None = None
     logarithmic: bool = False
@@ -50,8 +40,33 @@ class Key:
     more: bool = False
     empty: str = ""
     choices: Callable[[], Mapping[str, str]] | None = None
+
+
+@dataclass(frozen=True)
+class Key:
+    """What people read about a key.
+
+    Attributes:
+        meaning: Text for the documentation, in Markdown.
+        default: Default in words, where the schema does not show it.
+        only: Another key of the table, and the values with which it allows this key; "" if the
+            other key is left out.
+        otherwise: Error for other values; `{value}` is the value of this key. Without this text,
+            whoever uses the value refuses it.
+        page: Its field on the page, which has no other keys.
+    """
+
+    meaning: str = ""
+    default: str = ""
     only: tuple[str, ...] = ()
     otherwise: str = ""
+    page: Input | None = None
+
+
+def key(value: Any, meaning: str | Key = "", **rule: Any) -> Any:
+    """A field of a table with the default `value` (`...` if it is required) and its `Key`."""
+    extra: Any = {"key": meaning if isinstance(meaning, Key) else Key(meaning, **rule)}
+    return Field(value, json_schema_extra=extra)
 
 
 @dataclass(frozen=True)
@@ -76,8 +91,8 @@ class Rule:
     @property
     def choices(self) -> dict[str, str]:
         """Values and their labels, if the key has one of a few."""
-        if self.key.choices is not None:
-            return dict(self.key.choices())
+        if self.key.page and self.key.page.choices:
+            return dict(self.key.page.choices())
         return {} if self.kinds or self.unit else {word: word for word in self.words}
 
     @property
@@ -99,8 +114,8 @@ class Rule:
 def rules(table: type[BaseModel]) -> Iterator[Rule]:
     """The rules of all keys of `table`."""
     for name, field in table.model_fields.items():
-        key = next((part for part in field.metadata if isinstance(part, Key)), Key())
-        yield Rule(field.alias or name, name, key, field)
+        extra: Any = field.json_schema_extra or {"key": Key()}
+        yield Rule(field.alias or name, name, extra["key"], field)
 
 
 def tables_in(field: FieldInfo) -> list[type[BaseModel]]:

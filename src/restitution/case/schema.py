@@ -18,7 +18,7 @@ from pydantic import (
 )
 
 from restitution.case.quantities import ImpactAngle, Length, Spin, Velocity
-from restitution.case.rulebook import Key, Rule, rules
+from restitution.case.rulebook import Input, Key, Rule, key, rules
 from restitution.collision import UnloadingMethod
 from restitution.contact.separation import RESTITUTION_ERROR
 from restitution.errors import shown
@@ -86,50 +86,36 @@ def _factors(value: Any) -> int | tuple[int, ...] | str:
 class GridTable(Table):
     """The table `[grid]`. `nodes` and `spacing` may be omitted if a scan defines the grid."""
 
-    nodes: Annotated[
-        Annotated[tuple[Nodes, Nodes], PairOf, AfterValidator(_few_enough)] | None,
-        Key(
-            "number of nodes along each axis: one value, or two for x and y; at most 2²⁷ nodes in "
-            "all; powers of two are not required",
-            default="required",
-            label="Nodes",
-            hint="along each edge",
-            slider=(64, 1024),
-            logarithmic=True,
-        ),
-    ] = None
-    spacing: Annotated[
-        Annotated[tuple[Length, Length], PairOf] | None,
-        Key(
-            "distance between nodes: one value, or two for x and y",
-            default="required",
-            label="Spacing",
-            slider=(1e-9, 1e-5),
-        ),
-    ] = None
-    refine: Annotated[
-        int | tuple[int, ...] | Literal["auto"],
-        PlainValidator(_factors),
-        Key(
-            "1, 2, 4, 8 … 64: every cell is divided into this many cells along x and along y, see "
-            'below. `"auto"` chooses for each depth the coarsest grid that '
-            "[resolves](resolution.md) its contact and its [adhesion](adhesion.md#grid), up to 2²⁴ "
-            "nodes (2²² with an attraction of finite range). One run then covers three or four "
-            "decades of velocity, and a warning names the depths that no grid resolves. A list "
-            "gives one value for each depth",
-            label="Refine",
-            hint='1, 2, 4, …, or "auto"',
-        ),
-    ] = 1
-    periodic: Annotated[
-        bool,
-        Key(
-            "`true`: two flat bodies with a periodic surface, see [periodic contacts](periodic.md)."
-            " Such a case has no restitution. `refine` must be one number. A case with adhesion "
-            'must use `adhesion = "cohesive"` and `[indentation]`. `realisations`, `[impact]` and '
-            "`[unloading]` are refused"
-        ),
-    ] = False
+    nodes: Annotated[tuple[Nodes, Nodes], PairOf, AfterValidator(_few_enough)] | None = key(
+        None,
+        "number of nodes along each axis: one value, or two for x and y; at most 2²⁷ nodes in "
+        "all; powers of two are not required",
+        default="required",
+        page=Input("Nodes", hint="along each edge", slider=(64, 1024), logarithmic=True),
+    )
+    spacing: Annotated[tuple[Length, Length], PairOf] | None = key(
+        None,
+        "distance between nodes: one value, or two for x and y",
+        default="required",
+        page=Input("Spacing", slider=(1e-9, 1e-5)),
+    )
+    refine: Annotated[int | tuple[int, ...] | Literal["auto"], PlainValidator(_factors)] = key(
+        1,
+        "1, 2, 4, 8 … 64: every cell is divided into this many cells along x and along y, see "
+        'below. `"auto"` chooses for each depth the coarsest grid that '
+        "[resolves](resolution.md) its contact and its [adhesion](adhesion.md#grid), up to 2²⁴ "
+        "nodes (2²² with an attraction of finite range). One run then covers three or four "
+        "decades of velocity, and a warning names the depths that no grid resolves. A list "
+        "gives one value for each depth",
+        page=Input("Refine", hint='1, 2, 4, …, or "auto"'),
+    )
+    periodic: bool = key(
+        False,
+        "`true`: two flat bodies with a periodic surface, see [periodic contacts](periodic.md)."
+        " Such a case has no restitution. `refine` must be one number. A case with adhesion "
+        'must use `adhesion = "cohesive"` and `[indentation]`. `realisations`, `[impact]` and '
+        "`[unloading]` are refused",
+    )
 
     @model_validator(mode="after")
     def _whole(self) -> Self:
@@ -157,9 +143,9 @@ VALUES = Key(
     "a list of 1 to 10 000 values, instead of `from`, `to` and `steps` (in `[impact]`, the key is "
     "`velocity`)",
     default="–",
-    label="Values",
-    hint='separated by commas; used instead of "from", "to" and "Steps"',
-    more=True,
+    page=Input(
+        "Values", hint='separated by commas; used instead of "from", "to" and "Steps"', more=True
+    ),
 )
 
 
@@ -167,34 +153,26 @@ class Series(Table, Generic[Quantity]):
     """A table that prescribes the depths (states of loading), such as `[load]`."""
 
     # The page writes the `label` of the table for {}, and takes its sliders and initial values.
-    from_: Annotated[
-        Quantity | None, Field(alias="from"), Key("first value", default="–", label="{} from")
-    ] = None
-    to: Annotated[
-        Quantity | None, Key("last value, larger than `from`", default="–", label="{} to")
-    ] = None
-    steps: Annotated[
-        Annotated[int, Field(gt=0, le=MOST_STEPS)] | None,
-        Key(
-            "number of values, including both ends; at least 2",
-            default="–",
-            label="Steps",
-            slider=(2, 48),
-            initial=24,
-        ),
-    ] = None
-    scale: Annotated[
-        Literal["log", "linear"],
-        Key(
-            "spacing of the values",
-            label="Spacing of the steps",
-            empty="logarithmic",
-            more=True,
-        ),
-    ] = "log"
-    values: Annotated[
-        Annotated[list[Quantity], Field(min_length=1, max_length=MOST_STEPS)] | None, VALUES
-    ] = None
+    from_: Annotated[Quantity | None, Field(alias="from")] = key(
+        None, "first value", default="–", page=Input("{} from")
+    )
+    to: Quantity | None = key(
+        None, "last value, larger than `from`", default="–", page=Input("{} to")
+    )
+    steps: Annotated[int, Field(gt=0, le=MOST_STEPS)] | None = key(
+        None,
+        "number of values, including both ends; at least 2",
+        default="–",
+        page=Input("Steps", slider=(2, 48), initial=24),
+    )
+    scale: Literal["log", "linear"] = key(
+        "log",
+        "spacing of the values",
+        page=Input("Spacing of the steps", more=True, empty="logarithmic"),
+    )
+    values: Annotated[list[Quantity], Field(min_length=1, max_length=MOST_STEPS)] | None = key(
+        None, VALUES
+    )
 
     list_key: ClassVar[str] = "values"
 
@@ -237,37 +215,30 @@ class ImpactTable(Series[Velocity]):
     """The table `[impact]`. With `angle` or `spin`, it also prescribes oblique impacts."""
 
     values: Annotated[
-        list[Velocity] | None,
-        _Listed,
-        Field(alias="velocity", min_length=1, max_length=MOST_STEPS),
-        VALUES,
-    ] = None
-    angle: Annotated[
-        list[ImpactAngle] | None,
-        _Listed,
-        _Many,
-        Key(
-            "one angle of impact from the normal (from 0 to below 90°), or a list",
-            label="Angles of impact",
+        list[Velocity] | None, _Listed, Field(alias="velocity", min_length=1, max_length=MOST_STEPS)
+    ] = key(None, VALUES)
+    angle: Annotated[list[ImpactAngle] | None, _Listed, _Many] = key(
+        None,
+        "one angle of impact from the normal (from 0 to below 90°), or a list",
+        page=Input(
+            "Angles of impact",
             hint="from the normal, separated by commas; adds depths for the normal velocities V "
             "cos θ",
             more=True,
         ),
-    ] = None
-    spin: Annotated[
-        list[Spin] | None,
-        _Listed,
-        _Many,
-        Key(
-            "spin of the first body before the impact, or a list of two values, one for each body; "
-            "positive in the sense in which friction turns a body without spin; not in Hz. With a "
-            "spin and no angle the impacts are head-on",
-            default='`"0 rad/s"`',
-            label="Spin before impact",
+    )
+    spin: Annotated[list[Spin] | None, _Listed, _Many] = key(
+        None,
+        "spin of the first body before the impact, or a list of two values, one for each body; "
+        "positive in the sense in which friction turns a body without spin; not in Hz. With a "
+        "spin and no angle the impacts are head-on",
+        default='`"0 rad/s"`',
+        page=Input(
+            "Spin before impact",
             hint="one value for the first body, or two values for both bodies",
             more=True,
         ),
-    ] = None
+    )
 
     list_key: ClassVar[str] = "velocity"
 
@@ -320,36 +291,24 @@ class ImpactTable(Series[Velocity]):
 class UnloadingTable(Table):
     """The table `[unloading]`: how many curves are written, and how unloading is computed."""
 
-    curves: Annotated[
-        int,
-        Field(ge=0, le=MOST_STEPS),
-        Key(
-            "number of depths from which the contact is unloaded step by step, including the "
-            "deepest. If the case has fewer depths, the contact is unloaded from all of them",
-            label="Unloading curves",
-            slider=(0, 24),
-        ),
-    ] = 3
-    steps: Annotated[
-        int,
-        Field(ge=4, le=MOST_STEPS),
-        Key(
-            "number of steps of each unloading curve without adhesion",
-            label="Steps of each curve",
-            slider=(4, 64),
-        ),
-    ] = 16
-    method: Annotated[
-        UnloadingMethod,
-        Key(
-            'with adhesion: `"path"` computes the unloading step by step, `"energy-estimate"` '
-            "estimates its work ([adhesion](adhesion.md))",
-            label="Unloading with adhesion",
-            empty="path",
-        ),
-    ] = "path"
-    restitution_error: Annotated[
-        float,
-        Field(gt=0, lt=1),
-        Key("with adhesion: target for the error of COR; it determines the number of steps"),
-    ] = RESTITUTION_ERROR
+    curves: Annotated[int, Field(ge=0, le=MOST_STEPS)] = key(
+        3,
+        "number of depths from which the contact is unloaded step by step, including the "
+        "deepest. If the case has fewer depths, the contact is unloaded from all of them",
+        page=Input("Unloading curves", slider=(0, 24)),
+    )
+    steps: Annotated[int, Field(ge=4, le=MOST_STEPS)] = key(
+        16,
+        "number of steps of each unloading curve without adhesion",
+        page=Input("Steps of each curve", slider=(4, 64)),
+    )
+    method: UnloadingMethod = key(
+        "path",
+        'with adhesion: `"path"` computes the unloading step by step, `"energy-estimate"` '
+        "estimates its work ([adhesion](adhesion.md))",
+        page=Input("Unloading with adhesion", empty="path"),
+    )
+    restitution_error: Annotated[float, Field(gt=0, lt=1)] = key(
+        RESTITUTION_ERROR,
+        "with adhesion: target for the error of COR; it determines the number of steps",
+    )
