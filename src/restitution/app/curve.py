@@ -1,7 +1,4 @@
-"""The curve that the page redraws while a slider moves.
-
-If the case has several surfaces, only the first is used. The total error is not computed.
-"""
+"""The curve that the page redraws while a slider moves: of the first surface, without errors."""
 
 from __future__ import annotations
 
@@ -45,8 +42,7 @@ class LiveCurves:
     def lines(self, tab: str, text: str, folder: Path, check: Callable[[], None]) -> Iterator[str]:
         """Compute the curve of the case `text`; yield lines of JSON for the page.
 
-        The scans of the case are in `folder`. `check` raises an exception if the curve is no longer
-        wanted. Depths that were computed are drawn even if other depths fail.
+        The scans of the case are in `folder`. `check` raises if the curve is no longer wanted.
         """
         case = parse_case(text).realisation(0)
         case.require_impact()
@@ -69,12 +65,10 @@ class LiveCurves:
         if curve is not None and len(curve.maps):
             yield curve.maps.line(min(max(depth, 0), len(curve.maps) - 1))
 
-    def beside(self, tab: str, shown: str, check: Callable[[], None]) -> Iterator[str]:
-        """Yield what the page shows beside the last curve of `tab`.
+    def smooth(self, tab: str, shown: str, check: Callable[[], None]) -> Iterator[str]:
+        """Yield the smooth curve and the surface of the last curve of `tab`.
 
-        First comes the curve of the same bodies without roughness, then the surface. The surface is
-        left out if the page already shows it. `shown` is the hash of the heights of the surface
-        that the page shows. `check` raises an exception if the answer is no longer wanted.
+        The surface is left out if `shown`, the hash of the heights on the page, is its own.
         """
         curve = self._curves.get(tab)
         if curve is not None:
@@ -82,10 +76,9 @@ class LiveCurves:
             yield from curve.with_surface(shown, check)
 
     def _contact(self, case: Case, folder: Path) -> Contact:
-        """Make the contact of `case`; reuse the last surface, which most sliders do not change."""
         scans = [folder / part.file for part in case.roughness if part.kind == "measured"]
-        # A new modification time or size shows that the file of a scan was replaced.
-        stamps = [(each.stat().st_mtime_ns, each.stat().st_size) for each in scans]
+        # Most sliders do not change the surface. A new time or size shows that a scan was replaced.
+        stamps = [(scan.stat().st_mtime_ns, scan.stat().st_size) for scan in scans]
         key = repr((case.roughness, case.grid, stamps))
         if self._surface is not None and self._surface[0] == key:
             return case.contact_on(self._surface[1])
@@ -95,8 +88,6 @@ class LiveCurves:
 
 
 class _Curve:
-    """A curve that is being computed."""
-
     def __init__(self, case: Case, contact: Contact, warnings: list[str]) -> None:
         self.case, self.contact, self.warnings = case, contact, warnings
         self.rows: list[dict[str, float]] = []

@@ -109,7 +109,6 @@ class Case(Table):
         return self
 
     def _check_period(self) -> None:
-        """Raise `ValueError` for keys that cannot be combined with a periodic grid."""
         for name, body in self.bodies().items():
             if body.radius is not None:
                 raise ValueError(f'{name}.radius: must be "flat" if the grid is periodic')
@@ -152,7 +151,6 @@ class Case(Table):
             )
 
     def _check_attraction(self) -> None:
-        """Raise `ValueError` for keys that a periodic contact with adhesion does not accept."""
         if self.interface.adhesive_energy == 0:
             return
         if self.interface.adhesion == "jkr":
@@ -218,11 +216,7 @@ class Case(Table):
         return self.model_copy(update={"roughness": parts})
 
     def variant(self, number: int) -> Case:
-        """Return this case with other surfaces.
-
-        `number` is added to the `seed` of each table [roughness]. If the table is a scan without a
-        seed, `number` is added to its `place`, which selects the part of the scan that is used.
-        """
+        """Return this case with other surfaces, see `variant` of the tables."""
         return self.model_copy(
             update={"roughness": tuple(part.variant(number) for part in self.roughness)}
         )
@@ -245,17 +239,11 @@ class Case(Table):
         return known if known.value == w else None
 
     def refined(self, factor: int | tuple[int, ...]) -> Case:
-        """Return this case with cells `factor` times smaller than those of [grid].
-
-        A tuple gives one factor for each depth (state of loading).
-        """
+        """Return this case on cells `factor` times smaller; a tuple has a factor for each depth."""
         return self.model_copy(update={"grid": self.grid.model_copy(update={"refine": factor})})
 
     def factors(self) -> list[int]:
-        """Refinement factors of the grid, one for each depth (state of loading).
-
-        The shallowest depth comes first.
-        """
+        """Refinement factors of the grid, one for each depth; the shallowest comes first."""
         if isinstance(self.grid.refine, tuple):
             return list(self.grid.refine)
         return [self.grid.factor] * len(self.depths())
@@ -337,12 +325,7 @@ class Case(Table):
         )
 
     def _adhesion_on(self, grid: Grid) -> Adhesion:
-        """The model of adhesion on `grid`.
-
-        With adhesion, the default for a periodic contact is "cohesive". For other contacts the
-        default is "cohesive" if the cells are fine enough and no other key of [interface] needs
-        "jkr". Otherwise it is "jkr".
-        """
+        """By default "cohesive", if cells are fine and no other key needs "jkr"."""
         interface = self.interface
         if interface.adhesion is not None:
             return interface.adhesion
@@ -353,17 +336,13 @@ class Case(Table):
         return "cohesive" if fine else "jkr"
 
     def _require_memory(self, grid: Grid) -> None:
-        """Raise `CaseError` if a run on `grid`, or the maps that it keeps, need too much memory."""
         maps, needed = self.maps_bytes(grid), self.run_bytes(grid)
         needs.require(needed - maps, grid)
         if maps:
             needs.require_maps(needed, len(self.depths()))
 
     def maps_bytes(self, grid: Grid) -> float:
-        """Size (bytes) of the maps of all depths, on the finest grid; 0 if only one is stored.
-
-        `grid` is the grid of the deepest depth.
-        """
+        """Size (bytes) of stored maps; 0 if only the deepest, on `grid`, is stored."""
         if self.maps == "deepest":
             return 0.0
         finest = divided(grid, max(1, max(self.factors()) // self.grid.factor))
@@ -384,9 +363,6 @@ class Case(Table):
         return next(name for name in DEPTHS if getattr(self, name) is not None)
 
     def depths(self) -> list[float]:
-        """The values that prescribe the depths (states of loading), in increasing order.
-
-        They are indentations (m), loads (N), impact velocities (m/s) or nominal pressures (Pa).
-        """
+        """The prescribed indentations (m), loads (N), velocities (m/s) or pressures (Pa)."""
         tables = (self.indentation, self.load, self.impact, self.pressure)
         return next(table.series() for table in tables if table is not None)  # only one is given

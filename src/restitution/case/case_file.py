@@ -25,17 +25,14 @@ _KINDS = (*get_args(RoughnessKind), "measured")
 
 
 def read_case(path: Path) -> tuple[Case, str]:
-    """Read and check a case file; return the case and the text of the file.
-
-    Raises a `CaseError` that names the file and the key.
-    """
+    """Read and check a case file; return the case and its text, or raise `CaseError`."""
     text = read_text(path)
     with naming(path):
         return parse_case(text), text
 
 
 def read_text(path: Path) -> str:
-    """Read the text of a case file. Raises a `CaseError` that names the file."""
+    """Read the text of a case file, or raise `CaseError`."""
     try:
         kind = path.stat()
         if not (stat.S_ISREG(kind.st_mode) or stat.S_ISDIR(kind.st_mode)):
@@ -79,13 +76,12 @@ def parse_toml(text: str) -> dict[str, Any]:
 
 
 def _is_table_of_numbers(text: str) -> bool:
-    """Whether the first line of `text` has cells, as in a CSV file, but no key of TOML."""
     first = text.lstrip("\ufeff \t\r\n").partition("\n")[0]
     return "=" not in first and "[" not in first and any(sign in first for sign in ",;\t")
 
 
 def _likely_cause(error: tomllib.TOMLDecodeError, text: str) -> str:
-    """The likely cause of a TOML error and its remedy; "" if there is none."""
+    """The likely cause of a TOML error and its remedy, or ""."""
     if twice := re.match(r"Cannot declare \('(\w+)',\) twice", str(error)):
         return f"; for several tables, begin each of them with [[{twice[1]}]]"
     place = re.search(r"at line (\d+), column", str(error))
@@ -136,7 +132,7 @@ def parse_case(text: str) -> Case:
 
 
 def _other_kind(content: dict[str, Any]) -> str:
-    """Say which command reads `content` if it is the file of a mixture or study; otherwise ""."""
+    """The command for `content`, if it is a mixture or study; otherwise ""."""
     if "materials" in content and "first" not in content:
         return "this is a mixture: use `restitution mixture FILE`"
     if "sweep" in content:
@@ -145,15 +141,13 @@ def _other_kind(content: dict[str, Any]) -> str:
 
 
 def problems_of(content: dict[str, Any]) -> dict[str, str]:
-    """Check the parsed tables of a case file; return a message for each wrong key.
-
-    A message about the whole file has the key "". The result is empty if the case is valid.
-    """
+    """A message for each wrong key of the parsed tables of a case file; "" is the whole file."""
     try:
         Case.model_validate(content)
     except ValidationError as error:
-        said = ((p, *_in_words(p, Case)) for p in reversed(error.errors(include_url=False)))
-        return {key or _key_of(problem): words for problem, key, words in said}
+        problems = reversed(error.errors(include_url=False))
+        texts = ((problem, *_in_words(problem, Case)) for problem in problems)
+        return {key or _key_of(problem): words for problem, key, words in texts}
     except CaseError as error:
         return {"": str(error)}
     return {}
@@ -162,8 +156,7 @@ def problems_of(content: dict[str, Any]) -> dict[str, str]:
 def in_words(error: ValidationError, root: type[Table] = Case, before: str = "") -> str:
     """Describe the problems of a file in one line: the first problem, then the other wrong keys.
 
-    `root` is the class of the table that was checked. `before` is the dotted path of this table in
-    the file, and is empty for the whole file.
+    `root` is the class of the table that was checked, `before` the path of this table in the file.
     """
     # Report unknown keys first, because a misspelt key is the usual reason for a missing key.
     problems = error.errors(include_url=False)
@@ -174,7 +167,6 @@ def in_words(error: ValidationError, root: type[Table] = Case, before: str = "")
 
 
 def _others(problems: list[Any]) -> str:
-    """List the other wrong keys, up to three by name, for the end of a message."""
     names = list(dict.fromkeys(_key_of(problem) for problem in problems))[1:]
     if not names:
         return ""

@@ -71,7 +71,6 @@ _REMEDIES: dict[Code, str] = {
 
 
 def _range(value: Any) -> Any:
-    """Convert a list of two positions to a tuple."""
     if not isinstance(value, list) or len(value) != 2:
         raise ValueError(f"{shown(value)} should be a list of two positions")
     return tuple(value)
@@ -87,7 +86,6 @@ Range = Annotated[tuple[Position, Position], BeforeValidator(_range), AfterValid
 
 
 def _unit_of_length(value: str) -> str:
-    """Require the name of a unit of length."""
     if in_metres(1.0, value) is None:
         raise ValueError(f"{shown(value)} is not a unit of length; give {UNITS}")
     return value
@@ -111,10 +109,7 @@ def _kinds_with(wave: str) -> tuple[str, ...]:
 
 @contextmanager
 def _naming(keys: Mapping[str, str]) -> Iterator[None]:
-    """Reword errors of the package `surfaces` in terms of the case file.
-
-    `keys` maps arguments of functions to keys of the file.
-    """
+    """Name keys (`keys`, by argument) and remedies of the case file in errors of `surfaces`."""
     try:
         yield
     except RefusedSurfaceError as error:
@@ -195,12 +190,17 @@ class GeneratedRoughness(Table):
         """Generate the surface on `grid` and interpolate it to cells `factor` times smaller."""
         fine = divided(grid, factor)
         normal = (self.skewness, self.kurtosis) == (0.0, 3.0)
-        made = needs.generated_bytes(grid, normal=normal, periodic=self.periodic)
-        needs.require(max(made, needs.generated_bytes(fine, normal=True, periodic=True)), fine)
-        asked = self.model_dump(exclude={"realisations"})
-        key = {"generated": asked, "nodes": grid.nodes, "spacing": grid.spacing, "refine": factor}
-        with _naming({argument: f"roughness.{argument}" for argument in asked}):
-            return kept(key, lambda: refine(generate_surface(grid, **asked), factor))
+        needed = needs.generated_bytes(grid, normal=normal, periodic=self.periodic)
+        needs.require(max(needed, needs.generated_bytes(fine, normal=True, periodic=True)), fine)
+        waves = self.model_dump(exclude={"realisations"})
+        made_from = {
+            "generated": waves,
+            "nodes": grid.nodes,
+            "spacing": grid.spacing,
+            "refine": factor,
+        }
+        with _naming({argument: f"roughness.{argument}" for argument in waves}):
+            return kept(made_from, lambda: refine(generate_surface(grid, **waves), factor))
 
 
 class CropTable(Table):
@@ -310,22 +310,13 @@ class MeasuredRoughness(Table):
         return self
 
     def variant(self, number: int) -> Self:
-        """Return a table for one other surface.
-
-        If the surface is a twin (a random surface with the statistics of the scan), `number` is
-        added to `seed`. Otherwise `number` is added to `place`, which selects the part of the scan
-        that is used.
-        """
+        """The table of a single surface: `number` is added to the seed of a twin, or to `place`."""
         if self.seed is None:  # the surface is not a twin
             return self.model_copy(update={"place": self.place + number, "realisations": 1})
         return self.model_copy(update={"seed": self.seed + number, "realisations": 1})
 
     def scan(self, folder: Path) -> Surface:
-        """Read, clean and level the scan, and move it so that a given point is in the middle.
-
-        The key `place` is the number of this point in a fixed sequence (see `surfaces.shift`). The
-        file name is relative to `folder`.
-        """
+        """Read, clean and level the scan, and move it to its `place`; `folder` holds the file."""
         with _naming(_CLEANING_KEYS):
             scan = read_surface(
                 folder / self.file,
@@ -342,16 +333,12 @@ class MeasuredRoughness(Table):
         return place_of(noted(level(scan, self.detrend)), self.place)
 
     def surface(self, grid: Grid | None, folder: Path, factor: int = 1) -> Surface:
-        """Make the roughness on cells `factor` times smaller than those of `grid`.
-
-        If `grid` is None, the pixels of the scan replace the cells of `grid`. Smaller cells resolve
-        shorter waves, but cells smaller than the pixels add no waves.
-        """
+        """Make the roughness on cells `factor` times smaller than those of `grid` or the scan."""
         scan = self.scan(folder)
         grid = grid or scan.grid
         whole = divided(grid, factor)
         needs.require(needs.measured_bytes(whole, scan.grid, twin=self.extend == "twin"), whole)
-        asked = {
+        made_from = {
             "measured": self.model_dump(exclude={"realisations"}),
             "path": str(folder / self.file),
             "sha256": scan.provenance["file_sha256"],
@@ -360,13 +347,10 @@ class MeasuredRoughness(Table):
             "refine": factor,
         }
         with _naming({}):
-            return kept(asked, lambda: self._placed(scan, grid, factor))
+            return kept(made_from, lambda: self._placed(scan, grid, factor))
 
     def _placed(self, scan: Surface, grid: Grid, factor: int) -> Surface:
-        """Place the scan on cells `factor` times smaller than those of `grid`.
-
-        The scan is extended first if the key `extend` is given.
-        """
+        """Place the scan, extended if `extend` is given, on cells `factor` times smaller."""
         if self.extend == "twin":
             # A twin is a random surface with the statistics of the scan. Its waves do not depend on
             # the grid, so evaluate them on the fine grid.
@@ -385,11 +369,9 @@ class MeasuredRoughness(Table):
         return replace(finer, provenance={**finer.provenance, "refined": factor, "refinement": how})
 
     def _steps_to_pixel(self, grid: Grid, pixels: Grid, factor: int) -> int:
-        """Number of parts into which each cell of `grid` is divided along each axis.
+        """Parts, along each axis, into which cells are divided to be no larger than the pixels.
 
-        The scan is placed on these parts. Their number starts at 1 and is doubled until the parts
-        are not larger than the pixels. Doubling ends earlier if the number would no longer divide
-        `factor`.
+        A power of two that divides `factor`.
         """
         steps = 1
         while factor % (2 * steps) == 0 and any(
