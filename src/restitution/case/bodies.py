@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import math
-import re
 from dataclasses import asdict, dataclass, replace
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, model_validator
 
 from restitution.case.materials import Material, PoissonsRatio, Property, material, materials
 from restitution.case.quantities import (
-    LONGEST,
     Density,
     Length,
     Pressure,
     SurfaceEnergy,
     Unit,
-    read_positive,
+    YieldRule,
+    read_yield_pressure,
 )
 from restitution.case.rulebook import Input, key, rules
 from restitution.case.schema import Table
@@ -31,10 +30,9 @@ from restitution.contact.contact import (
     Yields,
 )
 from restitution.contact.detachment import Detachment
-from restitution.errors import CaseError, shown
+from restitution.errors import CaseError
 
 _REQUIRED = ("youngs_modulus", "poissons_ratio")  # keys that every body needs
-_STRENGTHS = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*(?:\*\s*)?Y\s*")
 
 
 class BodyTable(Table):
@@ -42,8 +40,7 @@ class BodyTable(Table):
 
     material: str | None = key(
         None,
-        "a name in the [library](materials.md). The library then provides those of the "
-        "following keys that you do not give",
+        "a name in the [library](materials.md), which provides the following keys if left out",
         page=Input(
             "Material",
             empty="own values",
@@ -127,33 +124,12 @@ FROM_LIBRARY = {
     if rule.name in Material.model_fields
 }
 
-YieldRule = tuple[float, Literal["yield_strength", "hardness"]]
 MOST_FRICTION = 10.0  # largest coefficient of friction; a larger value must be a mistake
-# Ratio of the strengths of two bodies below which both yield, and below which they are equal.
+# Ratio of the strengths of two bodies below which both yield, and below which they are equal. The
+# harder one stays elastic if it first yields (at 1.6 Y) above full plasticity of the softer one.
 _BOTH_YIELD, _EQUAL = FULL_CONSTRAINT / 1.6, 1.1
 # Models of plasticity that limit the contact pressure to a constant.
 _CONSTANT_BOUND = ("equilibrium", "truncated")
-
-
-def _pressure_or_rule(value: Any) -> float | YieldRule:
-    """Read the key `yield_pressure`: return a pressure in Pa, or a rule.
-
-    The pressure is infinite for "elastic". A rule is a factor and the quantity that the factor
-    multiplies. "2.8 Y" gives (2.8, "yield_strength"), and "hardness" gives (1.0, "hardness").
-    """
-    if value == "elastic":
-        return math.inf
-    if value == "hardness":
-        return 1.0, "hardness"
-    short = isinstance(value, str) and len(value) <= LONGEST
-    if not (short and (match := _STRENGTHS.fullmatch(value))):
-        return read_positive(value, "Pa")
-    if not 0.5 <= (factor := float(match[1])) <= 10:
-        raise ValueError(
-            f"{shown(value)} is not a plausible contact pressure; the factor of Y must be from 0.5 "
-            "to 10 (usually 1.6 to 3)"
-        )
-    return factor, "yield_strength"
 
 
 @dataclass(frozen=True)
@@ -186,9 +162,8 @@ class InterfaceTable(Table):
 
     yield_strength: Pressure | None = key(
         None,
-        "Y from a tensile test. The upper limit of the contact pressure starts at 1.6 Y and "
-        "grows with deformation. If only the hardness of the softer body is known, the contact "
-        "yields at this hardness; if neither is known, the case is refused",
+        "Y from a tensile test. The limit of the contact pressure starts at 1.6 Y and grows with "
+        "deformation. If only the hardness of the softer body is known, it yields at this hardness",
         default="that of the softer body",
         page=Input(
             "Yield strength Y",
@@ -198,8 +173,7 @@ class InterfaceTable(Table):
     )
     tangent_modulus: Pressure | None = key(
         None,
-        "E_t, the slope of the tensile stress–strain curve after yield, for metals that "
-        "harden; needs a yield strength",
+        "E_t, the slope of the tensile curve after yield, of metals that harden; with a strength Y",
         default='`"0 Pa"`',
         page=Input(
             "Tangent modulus",
@@ -208,15 +182,11 @@ class InterfaceTable(Table):
             more=True,
         ),
     )
-    yield_pressure: Annotated[
-        float | YieldRule | None, Unit("Pa", lambda value, _: _pressure_or_rule(value))
-    ] = key(
+    yield_pressure: Annotated[float | YieldRule | None, Unit("Pa", read_yield_pressure)] = key(
         None,
-        "a constant upper limit p_y of the contact pressure, such as a hardness, instead of a "
-        "yield strength. A rule for the softer body may be given instead of a value: "
-        '`"2.8 Y"` or `"1.6 Y"` (multiples of its yield strength, or its hardness if it has no '
-        'yield strength), or `"hardness"`; see [which to use](materials.md). `"elastic"` '
-        "switches yielding off",
+        "a constant limit p_y of the contact pressure instead of a yield strength: a pressure, "
+        'or for the softer body `"2.8 Y"`, `"1.6 Y"` (its hardness if Y is unknown) or '
+        '`"hardness"`; see [which to use](materials.md). `"elastic"` switches yielding off',
         page=Input(
             "Constant yield pressure",
             hint='replaces Y; a pressure, "2.8 Y", "hardness" (of the softer body) or "elastic"',
@@ -225,35 +195,32 @@ class InterfaceTable(Table):
     )
     plasticity: Plasticity | None = key(
         None,
-        'the model of plasticity; with a yield pressure it may also be `"truncated"` '
-        "(Thornton and Ning); see [method](method.md)",
+        'with a yield pressure, `"truncated"` is the model of Thornton and Ning; see '
+        "[method](method.md)",
         default='`"expanding-cavity"` with a yield strength, `"equilibrium"` with a yield pressure',
         page=Input("Plasticity", more=True, empty="chosen from the values above"),
     )
     work_of_adhesion: SurfaceEnergy | None = key(
         None,
         'w; see [adhesion](adhesion.md). `"library"` takes it from the [surface '
-        "energies](materials.md#work-of-adhesion) of the two materials. If you leave it out "
-        "and the case includes velocities at which adhesion would matter, a warning states the "
-        "velocity below which it matters",
+        "energies](materials.md#work-of-adhesion) of the two materials. Without this key, a "
+        "warning states the velocity below which adhesion matters",
         default='`"0 J/m^2"`',
         page=Input("Work of adhesion w", hint="if empty, no adhesion", slider=(1e-4, 1.0)),
     )
     adhesion: Adhesion | None = key(
         None,
         'range of the attraction: `"cohesive"` (Lennard-Jones, with the range z₀ = '
-        '`equilibrium_separation`) or `"jkr"` (zero range). The default is `"cohesive"` if the '
-        "size of a cell is at most 0.3 times the smaller of E\\*z₀²/w and √(R\\*z₀), and "
-        'otherwise `"jkr"` with a warning and a `model_error`; see '
-        "[adhesion](adhesion.md#the-range-of-the-attraction)",
+        '`equilibrium_separation`) or `"jkr"` (zero range). The default is `"cohesive"` if cells '
+        "are at most 0.3 times the smaller of E\\*z₀²/w and √(R\\*z₀), and otherwise "
+        '`"jkr"`; see [adhesion](adhesion.md#the-range-of-the-attraction)',
         default="depends on the grid",
         page=Input("Range of adhesion", more=True, empty="chosen from the grid"),
     )
     approach: Approach = key(
         "equilibrium",
         "how adhesion acts during [loading](adhesion.md#three-ways-to-approach). "
-        'Alternatives are `"hertzian"` '
-        '(adhesion during unloading only) and `"pull-increments"` (the method of the paper)',
+        '`"hertzian"`: adhesion during unloading only; `"pull-increments"`: as in the paper',
         only=("adhesion", "", "jkr"),
         otherwise='approach: "{value}" belongs to adhesion = "jkr"; cohesive bodies always '
         "attract each other on approach, so leave approach out",
@@ -262,8 +229,7 @@ class InterfaceTable(Table):
     detachment: Detachment = key(
         "crack-closure",
         "criterion for [releasing a node](adhesion.md#when-a-node-is-released). "
-        'The alternative is `"pohrt-popov"` '
-        "(the criterion of the paper)",
+        '`"pohrt-popov"` is the criterion of the paper',
         only=("adhesion", "", "jkr"),
         otherwise='detachment: "{value}" belongs to adhesion = "jkr"; a cohesive contact has '
         "no detachment criterion, so leave detachment out",
@@ -271,8 +237,7 @@ class InterfaceTable(Table):
     )
     equilibrium_separation: Length = key(
         EQUILIBRIUM_SEPARATION,
-        'z₀, the range of the attraction with `adhesion = "cohesive"`. It also enters the '
-        "Tabor parameter",
+        'z₀, the range of the attraction with `adhesion = "cohesive"`, and in the Tabor parameter',
     )
     friction: Annotated[float, Field(ge=0, le=MOST_FRICTION)] | None = key(
         None,
@@ -336,12 +301,9 @@ class InterfaceTable(Table):
         return self.work_of_adhesion or 0.0
 
     def yielding(self, first: BodyTable, second: BodyTable) -> Yielding:
-        """Choose the yield model of the contact between two bodies; the softer body yields.
+        """The yield model of two bodies, of which the softer one yields.
 
-        Keys of the table [interface] have priority over the following defaults. If the yield
-        strength of the softer body is known, the pressure at which it yields grows with
-        deformation. If only its hardness is known (as for glass), it yields at this hardness.
-        Raises `CaseError` if a value that the model needs is unknown.
+        By default, its yield strength is used or, if this is unknown (glass), its hardness.
         """
         model = self._model(first, second)
         elastic = math.isinf(model.hardness)
@@ -362,9 +324,10 @@ class InterfaceTable(Table):
             return self._growing(*min(known))
         if self.plasticity is None and self.tangent_modulus is None:
             return pressure
+        bodies = (("first", first), ("second", second))
         name, body = min(
-            (each for each in (("first", first), ("second", second)) if not each[1].yield_strength),
-            key=lambda each: each[1].hardness or math.inf,
+            ((name, body) for name, body in bodies if not body.yield_strength),
+            key=lambda named: named[1].hardness or math.inf,
         )
         raise CaseError(
             f"interface.yield_strength: is missing, and {_named(name, body)} has no "
@@ -381,25 +344,22 @@ class InterfaceTable(Table):
         )
 
     def _at_a_pressure(self, first: BodyTable, second: BodyTable) -> Yielding:
-        """Make the model with a constant yield pressure.
-
-        If the key `yield_pressure` is not a pressure, the yield pressure of the softer body is
-        used. It is a multiple of the yield strength Y of this body, by default 2.8 Y. A body whose
-        Y is unknown yields at its hardness.
-        """
+        """The model with a constant yield pressure; by default 2.8 Y, or a hardness."""
         model = self.plasticity or "equilibrium"
         if isinstance(self.yield_pressure, float):
             source = "elastic" if math.isinf(self.yield_pressure) else "given"
             return Yielding(source, model, yield_pressure=self.yield_pressure)
         factor, quantity = self.yield_pressure or (FULL_CONSTRAINT, "yield_strength")
-        found = []
+        pressures = []
         for name, body in (("first", first), ("second", second)):
-            of = f"of {_named(name, body)}"
+            whose = f"of {_named(name, body)}"
             if quantity == "yield_strength" and body.yield_strength is not None:
                 Y = body.yield_strength
-                found.append((factor * Y, f"{factor:g} Y {of}, Y = {1e-6 * Y:.6g} MPa"))
+                pressures.append((factor * Y, f"{factor:g} Y {whose}, Y = {1e-6 * Y:.6g} MPa"))
             elif body.hardness is not None:
-                found.append((body.hardness, f"hardness {of}, {1e-6 * body.hardness:.6g} MPa"))
+                pressures.append(
+                    (body.hardness, f"hardness {whose}, {1e-6 * body.hardness:.6g} MPa")
+                )
             elif self.yield_pressure is None:
                 raise CaseError(
                     "interface.yield_strength: is missing, and so are "
@@ -412,17 +372,12 @@ class InterfaceTable(Table):
                     + (f", and the library has none for {body.material}" if body.material else "")
                     + "; give it, or write yield_pressure as a pressure"
                 )
-        pressure, source = min(found)
+        pressure, source = min(pressures)
         return Yielding(source, model, yield_pressure=pressure)
 
 
 def yielding_body(first: BodyTable, second: BodyTable) -> Yields | None:
-    """Say which body yields: the softer one, or both; None if a strength is unknown.
-
-    The harder body stays elastic if it first yields (at 1.6 Y) above the pressure of full
-    plasticity of the softer one. Below that, it counts as yielding if both are nearly equal, or if
-    the softer body is the larger one, whose `model_error` is smaller.
-    """
+    """The softer body, or both; None if unknown. A larger body has a smaller `model_error`."""
     if first == second:
         return "both"
     p, q = _full_pressure(first), _full_pressure(second)

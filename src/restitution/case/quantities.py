@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from decimal import Decimal
 from functools import lru_cache, partial
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple
 
 import pint
 from pydantic import GetCoreSchemaHandler
@@ -24,6 +24,9 @@ _UNIT = r"[^\W\d]+(?:\s*(?:\^|\*\*)\s*-?\d|\d)?"
 _POWER = re.compile(r"(?<=[^\W\d])(\d)")
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*((?:{_UNIT})(?:\s*[*/·]\s*{_UNIT})*)\s*", re.UNICODE)
 
+_STRENGTHS = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*(?:\*\s*)?Y\s*")
+# A factor, and the strength of a body that it multiplies.
+YieldRule = tuple[float, Literal["yield_strength", "hardness"]]
 # Largest number of characters of a quantity. The patterns and the unit parser would need too much
 # time for longer texts.
 LONGEST = 100
@@ -151,6 +154,23 @@ def read_impact_angle(value: Any) -> float:
             "0 and less than 90 degrees"
         )
     return result
+
+
+def read_yield_pressure(value: Any, unit: str) -> float | YieldRule:
+    """A pressure (inf for "elastic") or a rule: "2.8 Y" gives (2.8, "yield_strength")."""
+    if value == "elastic":
+        return math.inf
+    if value == "hardness":
+        return 1.0, "hardness"
+    short = isinstance(value, str) and len(value) <= LONGEST
+    if not (short and (match := _STRENGTHS.fullmatch(value))):
+        return read_positive(value, unit)
+    if not 0.5 <= (factor := float(match[1])) <= 10:
+        raise ValueError(
+            f"{shown(value)} is not a plausible contact pressure; the factor of Y must be from 0.5 "
+            "to 10 (usually 1.6 to 3)"
+        )
+    return factor, "yield_strength"
 
 
 @dataclass(frozen=True)

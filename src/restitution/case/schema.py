@@ -102,11 +102,10 @@ class GridTable(Table):
     refine: Annotated[int | tuple[int, ...] | Literal["auto"], PlainValidator(_factors)] = key(
         1,
         "1, 2, 4, 8 … 64: every cell is divided into this many cells along x and along y, see "
-        'below. `"auto"` chooses for each depth the coarsest grid that '
-        "[resolves](resolution.md) its contact and its [adhesion](adhesion.md#grid), up to 2²⁴ "
-        "nodes (2²² with an attraction of finite range). One run then covers three or four "
-        "decades of velocity, and a warning names the depths that no grid resolves. A list "
-        "gives one value for each depth",
+        'below. `"auto"` chooses for each depth the coarsest grid that [resolves](resolution.md) '
+        "its contact and its [adhesion](adhesion.md#grid), up to 2²⁴ nodes (2²² with an attraction "
+        "of finite range), so that one run covers three or four decades of velocity. A list gives "
+        "one value for each depth",
         page=Input("Refine", hint='1, 2, 4, …, or "auto"'),
     )
     periodic: bool = key(
