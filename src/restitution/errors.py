@@ -21,7 +21,14 @@ class RestitutionError(Exception):
         self.argument = argument
 
     def renamed(self, keys: Mapping[str, str]) -> Self:
-        """The same error with the key of a case file (`keys`) in place of the argument."""
+        """Name the key of a case file instead of the argument.
+
+        Args:
+            keys: Keys by argument.
+
+        Returns:
+            An error about the key, or this error if its argument has no key.
+        """
         if self.argument not in keys:
             return self
         text = str(self).removeprefix(f"{self.argument}: ")

@@ -94,7 +94,7 @@ def _tab(browser, errors, **options):
 
 
 def _expect_none(errors):
-    assert [each for each in errors if HARMLESS not in each] == []
+    assert [error for error in errors if HARMLESS not in error] == []
 
 
 @pytest.fixture
