@@ -11,14 +11,20 @@ Blocks of a page run from top to bottom in one folder, which holds a copy of `ex
   lines. Numbers may differ by one in the last digit shown, or by 1e-7 of their value, because
   results differ that much between processors. Times and memory may have any value.
 
+A table below `<!-- keys: NAME … -->` is made from the schema of the case file. It has the keys that
+all tables NAME have, less those of a table after `without`. `roughness:measured` is a kind of a
+table, and `case` stands for the keys above all tables. A table below `<!-- quantities -->` lists
+quantities and units.
+
 A block below the comment `<!-- not run: REASON -->` is left out.
-`python tests/document_blocks.py PAGE…` writes into `text` blocks what was printed.
+`python tests/document_blocks.py PAGE…` writes the tables, and into `text` blocks what was printed.
 """
 
 from __future__ import annotations
 
 import contextlib
 import io
+import math
 import os
 import re
 import shutil
@@ -26,8 +32,10 @@ import subprocess
 import sys
 import tempfile
 import tomllib
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import tomli_w
 
@@ -77,6 +85,134 @@ def blocks(text: str) -> list[Block]:
             )
         )
     return fenced
+
+
+_TABLE = re.compile(r"(<!-- (?:keys: (?P<keys>.*)|quantities) -->\n\n)(?:\|.*\n)*")
+_TYPES = {float: "number", str: "text", bool: "`true` or `false`"}
+
+
+def with_tables(text: str) -> str:
+    """A page with its tables of keys and quantities."""
+    return _TABLE.sub(
+        lambda match: match[1] + (key_table(match["keys"]) if match["keys"] else quantities()),
+        text,
+    )
+
+
+def quantities() -> str:
+    """The quantities of the case file, their usual units and plausible values."""
+    from restitution.case.quantities import QUANTITIES
+
+    rows = [
+        (
+            quantity.name.partition(" ")[2],
+            ", ".join(f"`{unit}`" for unit in quantity.usual.split()),
+            "any" if math.isinf(quantity.bounds[0]) else f"{_interval(quantity.bounds)} {si}",
+        )
+        for si, quantity in QUANTITIES.items()
+    ]
+    return _table(("quantity", "usual units", "plausible values"), rows)
+
+
+def _interval(bounds: tuple[float, float]) -> str:
+    return " to ".join(_number(end) for end in bounds)
+
+
+def key_table(names: str, case: Any = None) -> str:
+    """The keys that all tables `names` have, or the first of them `without` those of the second."""
+    from restitution.case.case import Case
+    from restitution.case.rulebook import rules
+
+    shown, _, hidden = names.partition(" without ")
+    tables = [
+        [rule for rule in rules(_schema(case or Case, name)) if rule.key.meaning]
+        for name in shown.split()
+    ]
+    left_out = {rule.attribute for name in hidden.split() for rule in rules(_schema(Case, name))}
+    rows = [
+        [rule for table in tables for rule in table if rule.attribute == first.attribute]
+        for first in tables[0]
+        if first.attribute not in left_out
+    ]
+    cells = [
+        (
+            ", ".join(dict.fromkeys(f"`{rule.name}`" for rule in row)),
+            _one_of(word for rule in row for word in _values(rule)),
+            _default(row[0]),
+            _condition(row[0]) + row[0].key.meaning,
+        )
+        for row in rows
+        if len(row) == len(tables)
+    ]
+    return _table(("key", "value", "default", "meaning"), cells)
+
+
+def _schema(case: Any, name: str) -> Any:
+    from restitution.case.rulebook import rules, tables_in
+
+    if name == "case":
+        return case
+    name, _, kind = name.partition(":")
+    kinds = tables_in(case.model_fields[name])
+    return next(table for table in kinds if not kind or kind in next(rules(table)).words)
+
+
+def _values(rule: Any) -> list[str]:
+    from restitution.case.quantities import QUANTITIES
+    from restitution.case.rulebook import tables_in
+
+    if rule.unit:
+        return [QUANTITIES[rule.unit.si].name.partition(" ")[2]]
+    words = [f"whole number{_range(rule, whole=True)}"] if int in rule.kinds else []
+    words += [f"{word}{_range(rule)}" for kind, word in _TYPES.items() if kind in rule.kinds]
+    words += [f'`"{word}"`' for word in rule.words]
+    return words or ["table"] * bool(tables_in(rule.field))
+
+
+def _one_of(words: Iterable[str]) -> str:
+    return " or ".join(", ".join(dict.fromkeys(words)).rsplit(", ", 1))
+
+
+def _condition(rule: Any) -> str:
+    other, *values = rule.key.only or ("",)
+    words = [f'`"{value}"`' for value in values if value]
+    without = f" or without `{other}`" if "" in values else ""
+    return f"with `{other}` = {_one_of(words)}{without}: " if words else ""
+
+
+def _range(rule: Any, *, whole: bool = False) -> str:
+    names = [(type(limit).__name__, limit) for limit in rule.limits]
+    ends = {name: getattr(limit, name.lower()) for name, limit in names}
+    if whole and "Gt" in ends:
+        ends["Ge"] = ends.pop("Gt") + 1
+    if whole and "Lt" in ends:
+        ends["Le"] = ends.pop("Lt") - 1
+    before = {"Ge": "from", "Gt": "above", "Le": "to" if "Ge" in ends else "up to", "Lt": "below"}
+    said = [f" {words} {_number(ends[end])}" for end, words in before.items() if end in ends]
+    return ("" if "Ge" in ends else " and").join(said)
+
+
+def _number(value: float) -> str:
+    text = f"{value:,}" if isinstance(value, int) and value >= 10_000 else f"{value:g}"
+    text = re.sub(r"e\+?(-?)0*", r"e\1", text)
+    return text.replace(",", "\N{NO-BREAK SPACE}").replace("-", "−")
+
+
+def _default(rule: Any) -> str:
+    from restitution.display import quantity
+
+    value = rule.field.default
+    if rule.key.default or rule.field.is_required() or value is None:
+        return rule.key.default or ("required" if rule.field.is_required() else "none")
+    if isinstance(value, bool):
+        return f"`{str(value).lower()}`"
+    text = quantity(value, rule.unit.si) if rule.unit else value
+    return f'`"{text}"`' if isinstance(text, str) else f"{value:g}"
+
+
+def _table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    lines = [f"| {' | '.join(line)} |\n" for line in (heads, *rows)]
+    return "".join([lines[0], "|---" * len(heads) + "|\n", *lines[1:]])
 
 
 def same_text(shown: str, printed: str) -> bool:
@@ -206,7 +342,7 @@ def run_page(text: str, folder: Path) -> list[tuple[Block, str]]:
 
 def _updated(path: Path) -> str:
     """The page with what its blocks print; blocks with `…` are left to the author."""
-    text = path.read_text(encoding="utf-8")
+    text = with_tables(path.read_text(encoding="utf-8"))
     with tempfile.TemporaryDirectory() as folder:
         compared = run_page(text, Path(folder))
     for block, printed in reversed(compared):

@@ -32,7 +32,7 @@ ROOMS = (
     "api",
     "plots",
     "pages",
-    "live",
+    "app",
     "reproduce",
     "cli",
     "__main__",

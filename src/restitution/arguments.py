@@ -21,17 +21,16 @@ _MADE_BY = {
 _SERIES = (Sequence, Iterable, list, tuple)
 
 
-def typed(of: Checked) -> Checked:
-    """Make a function, or the constructor of a class, check its arguments.
+def typed(target: Checked) -> Checked:
+    """Make a function or a class refuse arguments that do not fit their annotations.
 
-    Each argument is compared with its annotation, if this is a class of this package, an array, a
-    number, a text, a flag, a series of these, or a union of these. Raises `ArgumentError`, which
-    names each wrong argument and the right call.
+    Checked are classes of this package, arrays, numbers, texts, flags, series of these, and unions.
+    The `ArgumentError` names each wrong argument and the right call.
     """
-    if isinstance(of, type):
-        of.__init__ = _checking(of.__init__, of.__name__, skip=1)  # type: ignore[misc]
-        return of
-    return cast(Checked, _checking(of, of.__name__))
+    if isinstance(target, type):
+        target.__init__ = _checking(target.__init__, target.__name__, skip=1)  # type: ignore[misc]
+        return target
+    return cast(Checked, _checking(target, target.__name__))
 
 
 def _checking(call: Callable[..., Any], name: str, skip: int = 0) -> Callable[..., Any]:
@@ -51,39 +50,35 @@ def _checking(call: Callable[..., Any], name: str, skip: int = 0) -> Callable[..
         wrong = {key: hints[key] for key in hints if key in given}
         wrong = {key: hint for key, hint in wrong.items() if not _fits(given[key], hint)}
         if wrong:
-            said = "; ".join(
+            problems = "; ".join(
                 f"{key}: {_described(given[key])} is not {_words(hint)}"
                 for key, hint in wrong.items()
             )
             makers = dict.fromkeys(maker for hint in wrong.values() for maker in _makers(hint))
-            made = " and ".join(makers)
-            right = _call(name, own, wrong) + (f", with {made}" if made else "")
-            raise ArgumentError(f"{said}; call {right}")
+            calls = " and ".join(makers)
+            right = _call(name, own, wrong) + (f", with {calls}" if calls else "")
+            raise ArgumentError(f"{problems}; call {right}")
         return call(*args, **kwargs)
 
     return checked
 
 
 def _hints(call: Callable[..., Any], signature: inspect.Signature) -> dict[str, Any]:
-    """The annotations of `signature` that can be evaluated now.
-
-    Names that are imported for type checkers alone cannot.
-    """
+    """The annotations of `signature`, except names that are imported for type checkers alone."""
     known = vars(sys.modules[call.__module__])
-    found = {}
+    hints = {}
     for key, parameter in signature.parameters.items():
         if parameter.kind in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD):
             continue
         hint = parameter.annotation
         try:
-            found[key] = eval(hint, dict(known)) if isinstance(hint, str) else hint
+            hints[key] = eval(hint, dict(known)) if isinstance(hint, str) else hint
         except (NameError, TypeError):
             continue
-    return found
+    return hints
 
 
 def _own(hint: Any) -> bool:
-    """Whether `hint` is a class of this package."""
     return isinstance(hint, type) and hint.__module__.startswith("restitution.")
 
 
@@ -124,7 +119,6 @@ def _item(hint: Any) -> Any:
 
 
 def _words(hint: Any) -> str:
-    """Describe the values that `hint` accepts."""
     return " or ".join(dict.fromkeys(map(_word, _members(hint))))
 
 
@@ -150,7 +144,6 @@ def _described(value: object) -> str:
 
 
 def _makers(hint: Any) -> Iterator[str]:
-    """Yield calls that make a value for `hint`."""
     for member in _members(hint):
         kind = _item(member) or member
         if _own(kind):
@@ -163,9 +156,9 @@ def _makers(hint: Any) -> Iterator[str]:
 def _call(name: str, parameters: Sequence[inspect.Parameter], also: Iterable[str] = ()) -> str:
     """Write the call of `name` with the arguments that it needs, and those named in `also`."""
     parts = []
-    for one in parameters:
-        needed = one.default is one.empty and one.kind not in (one.VAR_POSITIONAL, one.VAR_KEYWORD)
-        if needed or one.name in also:
-            later = one.kind == one.KEYWORD_ONLY or not needed
-            parts.append(f"{one.name}=…" if later else one.name)
+    for p in parameters:
+        needed = p.default is p.empty and p.kind not in (p.VAR_POSITIONAL, p.VAR_KEYWORD)
+        if needed or p.name in also:
+            later = p.kind == p.KEYWORD_ONLY or not needed
+            parts.append(f"{p.name}=…" if later else p.name)
     return f"{name}({', '.join(parts)})"

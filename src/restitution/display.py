@@ -76,10 +76,7 @@ def without_numbers(text: str) -> str:
 
 
 def some_of(names: Iterable[str], most: int = 6) -> str:
-    """Join the first `most` names with commas; if there are more, add, for example, "and 3 more".
-
-    Empty and repeated names are skipped.
-    """
-    each = list(dict.fromkeys(filter(None, names)))
-    more = f" and {len(each) - most} more" if len(each) > most else ""
-    return ", ".join(each[:most]) + more
+    """Join the first `most` distinct names with commas; add, for example, "and 3 more"."""
+    distinct = list(dict.fromkeys(filter(None, names)))
+    more = f" and {len(distinct) - most} more" if len(distinct) > most else ""
+    return ", ".join(distinct[:most]) + more

@@ -1,21 +1,38 @@
-"""Errors that the user can fix.
-
-Each message is one sentence. It names the key, file or quantity at fault, and then the remedy. The
-command line prints the message in red on one line and exits with status 1.
-"""
+"""Errors that the user can fix: one sentence with the key, file or quantity, and the remedy."""
 
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Self
 
 if TYPE_CHECKING:
     from pydantic import ValidationError
 
 
 class RestitutionError(Exception):
-    """A problem with the input or the computation; the message says what to change."""
+    """A problem with the input or the computation; the message says what to change.
+
+    The message begins with the name of the `argument` at fault, if this is known.
+    """
+
+    def __init__(self, *words: object, argument: str = "") -> None:
+        super().__init__(*((f"{argument}: {words[0]}",) if argument else words))
+        self.argument = argument
+
+    def renamed(self, keys: Mapping[str, str]) -> Self:
+        """Name the key of a case file instead of the argument.
+
+        Args:
+            keys: Keys by argument.
+
+        Returns:
+            An error about the key, or this error if its argument has no key.
+        """
+        if self.argument not in keys:
+            return self
+        text = str(self).removeprefix(f"{self.argument}: ")
+        return type(self)(text, argument=keys[self.argument])
 
 
 class CaseError(RestitutionError, ValueError):
@@ -31,18 +48,11 @@ class SurfaceError(RestitutionError, ValueError):
 
 
 class NotConvergedError(RestitutionError):
-    """A solve did not reach its tolerance, or loading or unloading did not reach its end.
-
-    There is no result.
-    """
+    """A solve, loading or unloading did not reach its tolerance or end; there is no result."""
 
 
 class DomainError(RestitutionError):
-    """The contact reaches the edge of the grid, or a value lies outside the computed range.
-
-    Contact at the edge is an error because material beyond the edge would support part of the load
-    but is not modelled. Results are not extrapolated beyond the computed range.
-    """
+    """The contact reaches the edge of the grid, or a value lies outside the computed range."""
 
 
 class OutputError(RestitutionError):
@@ -63,10 +73,7 @@ def one_line(text: str) -> str:
 
 
 def did_you_mean(word: str, known: Iterable[str], alike: float = 0.6) -> str:
-    """Return a question that suggests the most similar word of `known`; "" if none is similar.
-
-    `alike` is the least similarity, from 0 to 1.
-    """
+    """A question that suggests the most similar word; "" below the similarity `alike` (0 to 1)."""
     near = difflib.get_close_matches(word, list(known), n=1, cutoff=alike)
     return f'did you mean "{near[0]}"?' if near else ""
 
@@ -79,10 +86,7 @@ def not_one_of(word: str, known: Iterable[str]) -> str:
 
 
 def shown(value: object, limit: int = 60) -> str:
-    """Format a user's value for use in a message, on one line of at most `limit` characters.
-
-    Strings are put in quotes, which are not counted.
-    """
+    """Format a user's value for a message: one line of at most `limit` characters, texts quoted."""
     if isinstance(value, bool):
         return str(value).lower()  # TOML writes true and false in lower case
     try:

@@ -129,8 +129,8 @@ STEELS = 'first = { material = "steel", radius = "1 mm" }\nsecond = "304"\n'
 def test_a_known_strength_bounds_by_an_expanding_cavity():
     """The default is the strength of the softer body; interface.yield_strength overrides it."""
     strength = material("304").yield_strength.value
-    found = parsed(STEELS).yielding()
-    assert found == Yielding(
+    yielding = parsed(STEELS).yielding()
+    assert yielding == Yielding(
         f"Y of second (stainless-steel), {1e-6 * strength:.6g} MPa",
         "expanding-cavity",
         yield_strength=strength,

@@ -60,19 +60,19 @@ def test_a_material_of_known_strength_yields_by_default(case_text, tmp_path):
     assert case.yielding().source.startswith("Y of first (steel)")
     line = default_yield(case.yielding().source)
     assert line.startswith("The contact yields according to Y of first (steel)")
-    assert not any("yield_strength" in each for each in omissions(case))  # information, no warning
+    assert not any("yield_strength" in line for line in omissions(case))  # information, no warning
     assert default_yield(parse_case(case_text).yielding().source) == ""
     assert begin == case_text.index("[first]")
 
 
 def test_a_fine_powder_is_told_where_adhesion_would_matter(case_text):
     fine = case_text.replace('"500 um"', '"5 um"').replace('"20 nm"', '"1 nm"')
-    (line,) = [each for each in omissions(parse_case(fine)) if "work_of_adhesion" in each]
+    (line,) = [line for line in omissions(parse_case(fine)) if "work_of_adhesion" in line]
     assert "would change COR of smooth bodies by more than 0.01" in line
     given = fine.replace("[interface]", '[interface]\nwork_of_adhesion = "0 J/m^2"')
-    assert not any("work_of_adhesion" in each for each in omissions(parse_case(given)))
+    assert not any("work_of_adhesion" in line for line in omissions(parse_case(given)))
     coarse = case_text.replace('"20 nm"', '"200 nm"')
-    assert not any("work_of_adhesion" in each for each in omissions(parse_case(coarse)))
+    assert not any("work_of_adhesion" in line for line in omissions(parse_case(coarse)))
 
 
 def test_the_scan_is_levelled_before_a_part_is_cut_out(case_text, tmp_path):

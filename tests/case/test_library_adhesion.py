@@ -48,9 +48,9 @@ def test_a_pair_is_symmetric():
 
 def test_a_case_takes_it_from_its_materials():
     for second, pair in (('second = "glass"', ("lactose", "glass")), ("", ("lactose", "lactose"))):
-        asked = case(second=second)
-        assert asked.interface.work_of_adhesion == work_of_adhesion(*pair).value
-        assert asked.library_adhesion() == work_of_adhesion(*pair)
+        with_library = case(second=second)
+        assert with_library.interface.work_of_adhesion == work_of_adhesion(*pair).value
+        assert with_library.library_adhesion() == work_of_adhesion(*pair)
 
 
 def test_a_given_value_has_no_spread():
@@ -62,12 +62,12 @@ def test_no_value_is_used_by_omission():
     text = CASE.format(first="lactose", second='second = "glass"', w='"library"')
     silent = parse_case(text.replace('work_of_adhesion = "library"\n', ""))
     assert silent.interface.adhesive_energy == 0
-    (warning,) = [each for each in omissions(silent) if "work_of_adhesion" in each]
+    (warning,) = [line for line in omissions(silent) if "work_of_adhesion" in line]
     assert '"library" for the one of the materials library' in warning
     other = parse_case(
         text.replace('work_of_adhesion = "library"\n', "").replace("glass", "quartz")
     )
-    assert not any('"library"' in each for each in omissions(other))
+    assert not any('"library"' in line for line in omissions(other))
 
 
 def test_a_material_without_a_surface_energy_is_named():

@@ -5,14 +5,14 @@ from restitution.errors import CaseError
 from tolerance import approx
 
 ALL = materials().values()
-each_material = pytest.mark.parametrize("found", ALL, ids=lambda found: found.key)
+each_material = pytest.mark.parametrize("entry", ALL, ids=lambda entry: entry.key)
 
 
-def properties(found):
+def properties(entry):
     return {
         name: value
-        for name in type(found).model_fields
-        if isinstance(value := getattr(found, name), Property)
+        for name in type(entry).model_fields
+        if isinstance(value := getattr(entry, name), Property)
     }
 
 
@@ -53,49 +53,49 @@ def test_the_materials_asked_for_are_there():
 
 
 @each_material
-def test_every_quantity_has_a_spread_and_a_source(found):
+def test_every_quantity_has_a_spread_and_a_source(entry):
     needed = {"youngs_modulus", "poissons_ratio", "density"}
-    assert needed <= set(properties(found)) or found.key in PARTIAL
-    assert found.note.endswith(".")
-    for each in properties(found).values():
-        assert each.low <= each.value <= each.high
-        assert len(each.source) > 20
-    if found.surface_energy:
-        assert len(found.surface_energy.conditions) > 20
+    assert needed <= set(properties(entry)) or entry.key in PARTIAL
+    assert entry.note.endswith(".")
+    for value in properties(entry).values():
+        assert value.low <= value.value <= value.high
+        assert len(value.source) > 20
+    if entry.surface_energy:
+        assert len(entry.surface_energy.conditions) > 20
 
 
 @each_material
-def test_what_is_missing_is_said_in_the_note(found):
-    if found.key in PARTIAL:
-        missing = {"youngs_modulus", "poissons_ratio"} - set(properties(found))
+def test_what_is_missing_is_said_in_the_note(entry):
+    if entry.key in PARTIAL:
+        missing = {"youngs_modulus", "poissons_ratio"} - set(properties(entry))
         assert missing
-        assert all(key in found.note for key in missing)
+        assert all(key in entry.note for key in missing)
 
 
 @each_material
-def test_values_are_plausible(found):
-    E, nu, rho = (getattr(found, name) for name in ("youngs_modulus", "poissons_ratio", "density"))
+def test_values_are_plausible(entry):
+    E, nu, rho = (getattr(entry, name) for name in ("youngs_modulus", "poissons_ratio", "density"))
     if E and nu:
-        assert E.low > (1e8 if found.key in SOFT else 1e9)
+        assert E.low > (1e8 if entry.key in SOFT else 1e9)
         assert E.high < 1e12
         assert nu.low >= 0.05
         assert nu.high < 0.45
     if rho:
         assert rho.low > 900
         assert rho.high < 16_000
-    for strength in (found.yield_strength, found.hardness):
+    for strength in (entry.yield_strength, entry.hardness):
         if strength and E:
             assert E.value / strength.value > 5
-    if found.yield_strength and found.hardness:
-        assert 1.5 <= found.hardness.value / found.yield_strength.value <= 6
-    if found.surface_energy:
-        assert found.surface_energy.low > 0.015
-        assert found.surface_energy.high < 0.08
+    if entry.yield_strength and entry.hardness:
+        assert 1.5 <= entry.hardness.value / entry.yield_strength.value <= 6
+    if entry.surface_energy:
+        assert entry.surface_energy.low > 0.015
+        assert entry.surface_energy.high < 0.08
 
 
 @each_material
-def test_every_material_says_when_it_yields(found):
-    assert found.yield_strength or found.hardness or found.key in PARTIAL
+def test_every_material_says_when_it_yields(entry):
+    assert entry.yield_strength or entry.hardness or entry.key in PARTIAL
 
 
 def test_values_computed_from_others_are_right():
@@ -126,11 +126,11 @@ def test_names_are_found_in_any_case_and_by_alias():
 
 
 def test_names_and_aliases_are_unique():
-    names = [name.lower() for found in ALL for name in (found.key, *found.aliases)]
+    names = [name.lower() for entry in ALL for name in (entry.key, *entry.aliases)]
     assert len(names) == len(set(names))
-    for found in ALL:
-        for name in (found.key, *found.aliases):
-            assert material(name) is found
+    for entry in ALL:
+        for name in (entry.key, *entry.aliases):
+            assert material(name) is entry
 
 
 @pytest.mark.parametrize(

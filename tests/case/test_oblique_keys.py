@@ -48,25 +48,25 @@ def test_one_angle_or_many_in_degrees_or_radians():
 )
 def test_one_spin_or_two_in_several_units(text, spins):
     second = '{ material = "steel", radius = "1 mm" }'
-    found = case(f"spin = {text}", second=second).impact
-    assert found.spins() == approx(spins)
-    assert found.angles() == [0.0]
+    impact = case(f"spin = {text}", second=second).impact
+    assert impact.spins() == approx(spins)
+    assert impact.angles() == [0.0]
 
 
 def test_the_depths_are_the_normal_velocities_of_all_impacts_and_those_head_on():
-    found = case('angle = ["60 deg", "45 deg"]').depths()
+    depths = case('angle = ["60 deg", "45 deg"]').depths()
     # 1 m/s at 60 degrees meets like 0.5 m/s head-on
-    assert found == approx([0.25, math.sqrt(0.125), 0.5, math.sqrt(0.5), 1.0])
-    assert 0.5 in found
-    assert 1.0 in found
+    assert depths == approx([0.25, math.sqrt(0.125), 0.5, math.sqrt(0.5), 1.0])
+    assert 0.5 in depths
+    assert 1.0 in depths
 
 
 def test_without_angle_and_spin_nothing_changes():
-    found = case("")
-    assert found.depths() == [0.5, 1.0]
-    assert not found.impact.oblique
-    assert found.impact.angles() == []
-    assert found.interface.friction == 0.2
+    without = case("")
+    assert without.depths() == [0.5, 1.0]
+    assert not without.impact.oblique
+    assert without.impact.angles() == []
+    assert without.interface.friction == 0.2
 
 
 @pytest.mark.parametrize(

@@ -53,7 +53,7 @@ def folder(path, _):
 
 def other(path, pick):
     """The content of another file of the folder."""
-    files = [each for each in sorted(path.parent.iterdir()) if each.is_file() and each != path]
+    files = [file for file in sorted(path.parent.iterdir()) if file.is_file() and file != path]
     if files:
         shutil.copyfile(pick.choice(files), path)
 

@@ -120,9 +120,9 @@ def between(law, share):
 @given(laws(), st.lists(shares, min_size=1, max_size=5), beyond)
 def test_estimates_are_restitutions_with_errors_and_end_with_the_law(law, inside, factor):
     for share in inside:
-        found = law.at(min(max(between(law, share), law.lowest), law.highest))
-        assert 0 <= found.restitution <= 1
-        assert 0 <= found.error < math.inf
+        point = law.at(min(max(between(law, share), law.lowest), law.highest))
+        assert 0 <= point.restitution <= 1
+        assert 0 <= point.error < math.inf
     with pytest.raises(DomainError, match="nothing is extrapolated"):
         law.at(factor * (law.highest if factor > 1 else law.lowest))
 
@@ -201,13 +201,13 @@ def test_the_table_has_no_fit_where_nothing_is_resolved(law):
 @tried(3)
 @given(laws(most=4))
 def test_fitted_laws_are_silent_where_nothing_is_resolved(law):
-    found = replace(law, laws=fitted_laws(law))
-    low, high = found.fitted_range or (math.inf, -math.inf)
-    for each in found.laws:
-        assert 0 <= each.rms <= each.worst * (1 + 1e-12) <= 1 + 1e-9
-        for point, e in zip(found.points, each.restitution, strict=True):
+    fitted = replace(law, laws=fitted_laws(law))
+    low, high = fitted.fitted_range or (math.inf, -math.inf)
+    for fit in fitted.laws:
+        assert 0 <= fit.rms <= fit.worst * (1 + 1e-12) <= 1 + 1e-9
+        for point, e in zip(fitted.points, fit.restitution, strict=True):
             assert e is None or (0 <= e <= 1 and low <= point.velocity <= high)
-    for line in draw(law_figure(found)).axes[0].lines:
+    for line in draw(law_figure(fitted)).axes[0].lines:
         if line.get_linestyle() in ("-", "--"):
             drawn = line.get_xdata()[np.isfinite(np.asarray(line.get_ydata(), float))]
             assert all(low * (1 - 1e-9) <= V <= high * (1 + 1e-9) for V in drawn)

@@ -329,8 +329,8 @@ def test_more_of_a_scan_is_advised_only_where_there_is_more():
 @pytest.mark.parametrize(
     ("error", "words"),
     [
-        (DomainError("force: 5 N is too much"), "load: 5 N is too much"),
-        (NotConvergedError("velocity: 1 m/s was not met"), "impact: 1 m/s was not met"),
+        (DomainError("5 N is too much", argument="force"), "load: 5 N is too much"),
+        (NotConvergedError("1 m/s was not met", argument="velocity"), "impact: 1 m/s was not met"),
         (NotConvergedError("the solve at 3 nm: stopped"), "the solve at 3 nm: stopped"),
     ],
 )

@@ -3,70 +3,87 @@
 from __future__ import annotations
 
 import math
-import re
 from dataclasses import dataclass, replace
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from restitution.case.materials import PoissonsRatio, Property, material
+from restitution.case.materials import Material, PoissonsRatio, Property, material, materials
 from restitution.case.models import (
     Adhesion,
     Approach,
     Detachment,
     Plasticity,
     plasticity_of,
-    require_cohesive,
 )
 from restitution.case.quantities import (
-    LONGEST,
     Density,
     Length,
     Pressure,
     SurfaceEnergy,
-    read_positive,
+    Unit,
+    YieldRule,
+    read_yield_pressure,
 )
+from restitution.case.rulebook import Input, key, rules
 from restitution.case.schema import Table
 from restitution.contact.bodies import Body
 from restitution.contact.contact import Yields
 from restitution.contact.models import EQUILIBRIUM_SEPARATION
 from restitution.contact.models import Plasticity as PlasticityModel
 from restitution.contact.plasticity.cavity import FULL_CONSTRAINT
-from restitution.errors import CaseError, shown
+from restitution.errors import CaseError
 
-# Keys of a body that the materials library can supply, with their SI units.
-FROM_LIBRARY = {
-    "youngs_modulus": "Pa",
-    "poissons_ratio": "",
-    "density": "kg/m^3",
-    "yield_strength": "Pa",
-    "hardness": "Pa",
-}
 _REQUIRED = ("youngs_modulus", "poissons_ratio")  # keys that every body needs
-_STRENGTHS = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*(?:\*\s*)?Y\s*")
 
 
 class BodyTable(Table):
-    """The tables `[first]` and `[second]`.
+    """The tables `[first]` and `[second]`; a name such as "steel" stands for a wall of steel."""
 
-    Instead of a table, the case file can name a library material, as in `second = "steel"`. The
-    body is then a flat wall of this material.
-    """
-
-    material: str | None = None
+    material: str | None = key(
+        None,
+        "a name in the [library](materials.md), which provides the following keys if left out",
+        page=Input(
+            "Material",
+            empty="own values",
+            choices=lambda: {key: one.name for key, one in materials().items()},
+        ),
+    )
     radius: Annotated[
         Length | None, BeforeValidator(lambda value: None if value == "flat" else value)
-    ]
-    youngs_modulus: Pressure
-    poissons_ratio: PoissonsRatio
-    density: Density | None = None
-    yield_strength: Pressure | None = None
-    hardness: Pressure | None = None
+    ] = key(
+        ...,
+        'radius of the particle itself (not the reduced radius R*), or `"flat"` for a wall; '
+        "one body must be a sphere, unless the grid is periodic",
+        page=Input(
+            "Radius", hint='a length, or "flat" for a wall', slider=(1e-6, 1e-2), initial="flat"
+        ),
+    )
+    youngs_modulus: Pressure = key(
+        ..., "Young's modulus E", page=Input("Young's modulus E", slider=(1e6, 1e12), more=True)
+    )
+    poissons_ratio: PoissonsRatio = key(
+        ..., "Poisson's ratio ν", page=Input("Poisson's ratio ν", slider=(0.0, 0.5), more=True)
+    )
+    density: Density | None = key(
+        None,
+        "needed to compute impact velocities; a wall does not need it",
+        page=Input("Density", slider=(100, 2e4), more=True),
+    )
+    yield_strength: Pressure | None = key(
+        None,
+        "yield strength Y from a tensile test. The keys of `[interface]` below say how it is used",
+        page=Input("Yield strength Y", slider=(1e6, 1e11), more=True),
+    )
+    hardness: Pressure | None = key(
+        None,
+        "indentation hardness, used where the yield strength is unknown",
+        page=Input("Hardness H", slider=(1e6, 1e11), more=True),
+    )
 
     @model_validator(mode="before")
     @classmethod
     def _with_material(cls, value: Any) -> Any:
-        """Fill in omitted keys with values from the materials library."""
         table = {"material": value, "radius": "flat"} if isinstance(value, str) else value
         if not isinstance(table, dict) or not isinstance(table.get("material"), str):
             return table
@@ -79,9 +96,9 @@ class BodyTable(Table):
                 f"source; give {' and '.join(lacking)}"
             )
         taken = {
-            key: found.value if not unit else f"{found.value!r} {unit}"
+            key: supplied.value if not unit else f"{supplied.value!r} {unit}"
             for key, unit in FROM_LIBRARY.items()
-            if (found := getattr(known, key)) is not None
+            if (supplied := getattr(known, key)) is not None
         }
         return {**taken, **table, "material": known.key}
 
@@ -96,39 +113,25 @@ class BodyTable(Table):
             return {}
         known = material(self.material)
         return {
-            key: found
+            key: supplied
             for key in FROM_LIBRARY
-            if (found := getattr(known, key)) and found.value == getattr(self, key)
+            if (supplied := getattr(known, key)) and supplied.value == getattr(self, key)
         }
 
 
-YieldRule = tuple[float, Literal["yield_strength", "hardness"]]
+# Keys of a body that the materials library can supply, with their SI units.
+FROM_LIBRARY = {
+    rule.name: rule.unit.si if rule.unit else ""
+    for rule in rules(BodyTable)
+    if rule.name in Material.model_fields
+}
+
 MOST_FRICTION = 10.0  # largest coefficient of friction; a larger value must be a mistake
-# Ratio of the strengths of two bodies below which both yield, and below which they are equal.
+# Ratio of the strengths of two bodies below which both yield, and below which they are equal. The
+# harder one stays elastic if it first yields (at 1.6 Y) above full plasticity of the softer one.
 _BOTH_YIELD, _EQUAL = FULL_CONSTRAINT / 1.6, 1.1
 # Models of plasticity that limit the contact pressure to a constant.
 _CONSTANT_BOUND = ("equilibrium", "truncated")
-
-
-def _pressure_or_rule(value: Any) -> float | YieldRule:
-    """Read the key `yield_pressure`: return a pressure in Pa, or a rule.
-
-    The pressure is infinite for "elastic". A rule is a factor and the quantity that the factor
-    multiplies. "2.8 Y" gives (2.8, "yield_strength"), and "hardness" gives (1.0, "hardness").
-    """
-    if value == "elastic":
-        return math.inf
-    if value == "hardness":
-        return 1.0, "hardness"
-    short = isinstance(value, str) and len(value) <= LONGEST
-    if not (short and (match := _STRENGTHS.fullmatch(value))):
-        return read_positive(value, "Pa")
-    if not 0.5 <= (factor := float(match[1])) <= 10:
-        raise ValueError(
-            f"{shown(value)} is not a plausible contact pressure; the factor of Y must be from 0.5 "
-            "to 10 (usually 1.6 to 3)"
-        )
-    return factor, "yield_strength"
 
 
 @dataclass(frozen=True)
@@ -160,21 +163,98 @@ class Yielding:
 
 
 class InterfaceTable(Table):
-    """The table `[interface]`. By default, the softer body yields and the bodies do not adhere.
+    """The table `[interface]`. By default, the softer body yields and the bodies do not adhere."""
 
-    `friction` is the coefficient of friction µ of oblique impacts.
-    """
-
-    yield_strength: Pressure | None = None
-    tangent_modulus: Pressure | None = None
-    yield_pressure: Annotated[float | YieldRule | None, BeforeValidator(_pressure_or_rule)] = None
-    plasticity: Plasticity | None = None
-    work_of_adhesion: SurfaceEnergy | None = None
-    adhesion: Adhesion | None = None
-    approach: Approach = "equilibrium"
-    detachment: Detachment = "crack-closure"
-    equilibrium_separation: Length = EQUILIBRIUM_SEPARATION
-    friction: Annotated[float, Field(ge=0, le=MOST_FRICTION)] | None = None
+    yield_strength: Pressure | None = key(
+        None,
+        "Y from a tensile test. The limit of the contact pressure starts at 1.6 Y and grows with "
+        "deformation. If only the hardness of the softer body is known, it yields at this hardness",
+        default="that of the softer body",
+        page=Input(
+            "Yield strength Y",
+            hint="from a tensile test; if empty, the Y of the softer body",
+            slider=(1e6, 1e11),
+        ),
+    )
+    tangent_modulus: Pressure | None = key(
+        None,
+        "E_t, the slope of the tensile curve after yield, of metals that harden; with a strength Y",
+        default='`"0 Pa"`',
+        page=Input(
+            "Tangent modulus",
+            hint="slope of the stress-strain curve after yield",
+            slider=(1e6, 1e11),
+            more=True,
+        ),
+    )
+    yield_pressure: Annotated[float | YieldRule | None, Unit("Pa", read_yield_pressure)] = key(
+        None,
+        "a constant limit p_y of the contact pressure instead of a yield strength: a pressure, "
+        'or for the softer body `"2.8 Y"`, `"1.6 Y"` (its hardness if Y is unknown) or '
+        '`"hardness"`; see [which to use](materials.md). `"elastic"` switches yielding off',
+        page=Input(
+            "Constant yield pressure",
+            hint='replaces Y; a pressure, "2.8 Y", "hardness" (of the softer body) or "elastic"',
+            slider=(1e6, 1e11),
+        ),
+    )
+    plasticity: Plasticity | None = key(
+        None,
+        'with a yield pressure, `"truncated"` is the model of Thornton and Ning; see '
+        "[method](method.md)",
+        default='`"expanding-cavity"` with a yield strength, `"equilibrium"` with a yield pressure',
+        page=Input("Plasticity", more=True, empty="chosen from the values above"),
+    )
+    work_of_adhesion: SurfaceEnergy | None = key(
+        None,
+        'w; see [adhesion](adhesion.md). `"library"` takes it from the [surface '
+        "energies](materials.md#work-of-adhesion) of the two materials. Without this key, a "
+        "warning states the velocity below which adhesion matters",
+        default='`"0 J/m^2"`',
+        page=Input("Work of adhesion w", hint="if empty, no adhesion", slider=(1e-4, 1.0)),
+    )
+    adhesion: Adhesion | None = key(
+        None,
+        'range of the attraction: `"cohesive"` (Lennard-Jones, with the range z₀ = '
+        '`equilibrium_separation`) or `"jkr"` (zero range). The default is `"cohesive"` if cells '
+        "are at most 0.3 times the smaller of E\\*z₀²/w and √(R\\*z₀), and otherwise "
+        '`"jkr"`; see [adhesion](adhesion.md#the-range-of-the-attraction)',
+        default="depends on the grid",
+        page=Input("Range of adhesion", more=True, empty="chosen from the grid"),
+    )
+    approach: Approach = key(
+        "equilibrium",
+        "how adhesion acts during [loading](adhesion.md#three-ways-to-approach). "
+        '`"hertzian"`: adhesion during unloading only; `"pull-increments"`: as in the paper',
+        only=("adhesion", "", "jkr"),
+        otherwise='approach: "{value}" belongs to adhesion = "jkr"; cohesive bodies always '
+        "attract each other on approach, so leave approach out",
+        page=Input("Approach", more=True, empty="equilibrium"),
+    )
+    detachment: Detachment = key(
+        "crack-closure",
+        "criterion for [releasing a node](adhesion.md#when-a-node-is-released). "
+        '`"pohrt-popov"` is the criterion of the paper',
+        only=("adhesion", "", "jkr"),
+        otherwise='detachment: "{value}" belongs to adhesion = "jkr"; a cohesive contact has '
+        "no detachment criterion, so leave detachment out",
+        page=Input("Detachment", more=True, empty="crack-closure"),
+    )
+    equilibrium_separation: Length = key(
+        EQUILIBRIUM_SEPARATION,
+        'z₀, the range of the attraction with `adhesion = "cohesive"`, and in the Tabor parameter',
+    )
+    friction: Annotated[float, Field(ge=0, le=MOST_FRICTION)] | None = key(
+        None,
+        "coefficient of friction µ for [oblique impacts](oblique.md) and for exports to DEM "
+        "codes; the normal contact does not depend on it",
+        page=Input(
+            "Coefficient of friction µ",
+            hint="for oblique impacts and exports",
+            slider=(0.0, 1.0),
+            more=True,
+        ),
+    )
 
     @model_validator(mode="after")
     def _one_model(self) -> InterfaceTable:
@@ -204,8 +284,11 @@ class InterfaceTable(Table):
             raise ValueError(
                 f'adhesion: "{self.adhesion}" needs a work_of_adhesion; give it, or remove the key'
             )
-        if self.adhesion == "cohesive":
-            require_cohesive(self.approach, self.detachment, self.plasticity)
+        if self.adhesion == "cohesive" and self.plasticity == "truncated":
+            raise ValueError(
+                'plasticity: "truncated" is not defined with adhesion = "cohesive"; use '
+                '"equilibrium", or adhesion = "jkr"'
+            )
         return self
 
     @property
@@ -223,12 +306,9 @@ class InterfaceTable(Table):
         return self.work_of_adhesion or 0.0
 
     def yielding(self, first: BodyTable, second: BodyTable) -> Yielding:
-        """Choose the yield model of the contact between two bodies; the softer body yields.
+        """The yield model of two bodies, of which the softer one yields.
 
-        Keys of the table [interface] have priority over the following defaults. If the yield
-        strength of the softer body is known, the pressure at which it yields grows with
-        deformation. If only its hardness is known (as for glass), it yields at this hardness.
-        Raises `CaseError` if a value that the model needs is unknown.
+        By default, its yield strength is used or, if this is unknown (glass), its hardness.
         """
         model = self._model(first, second)
         elastic = math.isinf(model.hardness)
@@ -249,9 +329,10 @@ class InterfaceTable(Table):
             return self._growing(*min(known))
         if self.plasticity is None and self.tangent_modulus is None:
             return pressure
+        bodies = (("first", first), ("second", second))
         name, body = min(
-            (each for each in (("first", first), ("second", second)) if not each[1].yield_strength),
-            key=lambda each: each[1].hardness or math.inf,
+            ((name, body) for name, body in bodies if not body.yield_strength),
+            key=lambda named: named[1].hardness or math.inf,
         )
         raise CaseError(
             f"interface.yield_strength: is missing, and {_named(name, body)} has no "
@@ -268,25 +349,22 @@ class InterfaceTable(Table):
         )
 
     def _at_a_pressure(self, first: BodyTable, second: BodyTable) -> Yielding:
-        """Make the model with a constant yield pressure.
-
-        If the key `yield_pressure` is not a pressure, the yield pressure of the softer body is
-        used. It is a multiple of the yield strength Y of this body, by default 2.8 Y. A body whose
-        Y is unknown yields at its hardness.
-        """
+        """The model with a constant yield pressure; by default 2.8 Y, or a hardness."""
         model = self.plasticity or "equilibrium"
         if isinstance(self.yield_pressure, float):
             source = "elastic" if math.isinf(self.yield_pressure) else "given"
             return Yielding(source, model, yield_pressure=self.yield_pressure)
         factor, quantity = self.yield_pressure or (FULL_CONSTRAINT, "yield_strength")
-        found = []
+        pressures = []
         for name, body in (("first", first), ("second", second)):
-            of = f"of {_named(name, body)}"
+            whose = f"of {_named(name, body)}"
             if quantity == "yield_strength" and body.yield_strength is not None:
                 Y = body.yield_strength
-                found.append((factor * Y, f"{factor:g} Y {of}, Y = {1e-6 * Y:.6g} MPa"))
+                pressures.append((factor * Y, f"{factor:g} Y {whose}, Y = {1e-6 * Y:.6g} MPa"))
             elif body.hardness is not None:
-                found.append((body.hardness, f"hardness {of}, {1e-6 * body.hardness:.6g} MPa"))
+                pressures.append(
+                    (body.hardness, f"hardness {whose}, {1e-6 * body.hardness:.6g} MPa")
+                )
             elif self.yield_pressure is None:
                 raise CaseError(
                     "interface.yield_strength: is missing, and so are "
@@ -299,17 +377,12 @@ class InterfaceTable(Table):
                     + (f", and the library has none for {body.material}" if body.material else "")
                     + "; give it, or write yield_pressure as a pressure"
                 )
-        pressure, source = min(found)
+        pressure, source = min(pressures)
         return Yielding(source, model, yield_pressure=pressure)
 
 
 def yielding_body(first: BodyTable, second: BodyTable) -> Yields | None:
-    """Say which body yields: the softer one, or both; None if a strength is unknown.
-
-    The harder body stays elastic if it first yields (at 1.6 Y) above the pressure of full
-    plasticity of the softer one. Below that, it counts as yielding if both are nearly equal, or if
-    the softer body is the larger one, whose `model_error` is smaller.
-    """
+    """The softer body, or both; None if unknown. A larger body has a smaller `model_error`."""
     if first == second:
         return "both"
     p, q = _full_pressure(first), _full_pressure(second)

@@ -14,6 +14,7 @@ from restitution.case.materials import Property, with_library_adhesion, work_of_
 from restitution.case.models import Adhesion, adhesion_of
 from restitution.case.quantities import Force, Length, Pressure
 from restitution.case.roughness import GeneratedRoughness, MeasuredRoughness, Roughness
+from restitution.case.rulebook import Input, key
 from restitution.case.schema import GridTable, ImpactTable, Series, Table, UnloadingTable
 from restitution.contact.bodies import Pair
 from restitution.contact.cohesive.law import Cohesive
@@ -32,9 +33,18 @@ DEPTHS = ("indentation", "load", "impact", "pressure")
 class Case(Table):
     """The content of a case file, in SI units."""
 
-    title: str = ""
-    total_error: bool = True
-    maps: Literal["deepest", "all"] = "deepest"
+    title: str = key(
+        "", "a text that appears in all results of the case", default="none", page=Input("Title")
+    )
+    total_error: bool = key(
+        True, "`false` leaves out the additional curves that the [total error](error.md) needs"
+    )
+    maps: Literal["deepest", "all"] = key(
+        "deepest",
+        '`"all"` stores maps of pressure and plastic displacement at every depth in '
+        "[`maps.nc`](results.md#maps-of-every-depth). They take up to 16 bytes of memory per "
+        "node and depth; `check` states the size",
+    )
     first: BodyTable
     second: BodyTable | None = None
     interface: InterfaceTable = InterfaceTable()
@@ -43,9 +53,15 @@ class Case(Table):
         BeforeValidator(lambda value: tuple(value) if isinstance(value, list) else (value,)),
     ] = ()
     grid: GridTable = GridTable()
-    indentation: Series[Length] | None = None
-    load: Series[Force] | None = None
-    impact: ImpactTable | None = None
+    indentation: Series[Length] | None = key(
+        None, page=Input("Indentation", slider=(1e-10, 1e-4), initial=("20 nm", "2 um"))
+    )
+    load: Series[Force] | None = key(
+        None, page=Input("Load", slider=(1e-9, 1e2), initial=("1 mN", "0.3 N"))
+    )
+    impact: ImpactTable | None = key(
+        None, page=Input("Velocity", slider=(1e-4, 10.0), initial=("10 mm/s", "0.3 m/s"))
+    )
     pressure: Series[Pressure] | None = None
     unloading: UnloadingTable = UnloadingTable()
 
@@ -95,7 +111,6 @@ class Case(Table):
         return self
 
     def _check_period(self) -> None:
-        """Raise `ValueError` for keys that cannot be combined with a periodic grid."""
         for name, body in self.bodies().items():
             if body.radius is not None:
                 raise ValueError(f'{name}.radius: must be "flat" if the grid is periodic')
@@ -138,7 +153,6 @@ class Case(Table):
             )
 
     def _check_attraction(self) -> None:
-        """Raise `ValueError` for keys that a periodic contact with adhesion does not accept."""
         if self.interface.adhesive_energy == 0:
             return
         if self.interface.adhesion == "jkr":
@@ -204,11 +218,7 @@ class Case(Table):
         return self.model_copy(update={"roughness": parts})
 
     def variant(self, number: int) -> Case:
-        """Return this case with other surfaces.
-
-        `number` is added to the `seed` of each table [roughness]. If the table is a scan without a
-        seed, `number` is added to its `place`, which selects the part of the scan that is used.
-        """
+        """Return this case with other surfaces, see `variant` of the tables."""
         return self.model_copy(
             update={"roughness": tuple(part.variant(number) for part in self.roughness)}
         )
@@ -231,17 +241,11 @@ class Case(Table):
         return known if known.value == w else None
 
     def refined(self, factor: int | tuple[int, ...]) -> Case:
-        """Return this case with cells `factor` times smaller than those of [grid].
-
-        A tuple gives one factor for each depth (state of loading).
-        """
+        """Return this case on cells `factor` times smaller; a tuple has a factor for each depth."""
         return self.model_copy(update={"grid": self.grid.model_copy(update={"refine": factor})})
 
     def factors(self) -> list[int]:
-        """Refinement factors of the grid, one for each depth (state of loading).
-
-        The shallowest depth comes first.
-        """
+        """Refinement factors of the grid, one for each depth; the shallowest comes first."""
         if isinstance(self.grid.refine, tuple):
             return list(self.grid.refine)
         return [self.grid.factor] * len(self.depths())
@@ -331,12 +335,7 @@ class Case(Table):
         )
 
     def _adhesion_on(self, grid: Grid) -> Adhesion:
-        """The model of adhesion on `grid`.
-
-        With adhesion, the default for a periodic contact is "cohesive". For other contacts the
-        default is "cohesive" if the cells are fine enough and no other key of [interface] needs
-        "jkr". Otherwise it is "jkr".
-        """
+        """By default "cohesive", if cells are fine and no other key needs "jkr"."""
         interface = self.interface
         if interface.adhesion is not None:
             return interface.adhesion
@@ -348,17 +347,13 @@ class Case(Table):
         return "cohesive" if fine else "jkr"
 
     def _require_memory(self, grid: Grid) -> None:
-        """Raise `CaseError` if a run on `grid`, or the maps that it keeps, need too much memory."""
         maps, needed = self.maps_bytes(grid), self.run_bytes(grid)
         needs.require(needed - maps, grid)
         if maps:
             needs.require_maps(needed, len(self.depths()))
 
     def maps_bytes(self, grid: Grid) -> float:
-        """Size (bytes) of the maps of all depths, on the finest grid; 0 if only one is stored.
-
-        `grid` is the grid of the deepest depth.
-        """
+        """Size (bytes) of stored maps; 0 if only the deepest, on `grid`, is stored."""
         if self.maps == "deepest":
             return 0.0
         finest = divided(grid, max(1, max(self.factors()) // self.grid.factor))
@@ -378,9 +373,6 @@ class Case(Table):
         return next(name for name in DEPTHS if getattr(self, name) is not None)
 
     def depths(self) -> list[float]:
-        """The values that prescribe the depths (states of loading), in increasing order.
-
-        They are indentations (m), loads (N), impact velocities (m/s) or nominal pressures (Pa).
-        """
+        """The prescribed indentations (m), loads (N), velocities (m/s) or pressures (Pa)."""
         tables = (self.indentation, self.load, self.impact, self.pressure)
         return next(table.series() for table in tables if table is not None)  # only one is given

@@ -10,10 +10,10 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, get_args
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from restitution.case.case import Case
-from restitution.case.roughness import CropTable, GeneratedRoughness, MeasuredRoughness
+from restitution.case.rulebook import rules, tables_in
 from restitution.case.schema import MOST_STEPS, Table
 from restitution.errors import CaseError, SurfaceError, did_you_mean, shown
 from restitution.surfaces.generate import RoughnessKind
@@ -25,17 +25,14 @@ _KINDS = (*get_args(RoughnessKind), "measured")
 
 
 def read_case(path: Path) -> tuple[Case, str]:
-    """Read and check a case file; return the case and the text of the file.
-
-    Raises a `CaseError` that names the file and the key.
-    """
+    """Read and check a case file; return the case and its text, or raise `CaseError`."""
     text = read_text(path)
     with naming(path):
         return parse_case(text), text
 
 
 def read_text(path: Path) -> str:
-    """Read the text of a case file. Raises a `CaseError` that names the file."""
+    """Read the text of a case file, or raise `CaseError`."""
     try:
         kind = path.stat()
         if not (stat.S_ISREG(kind.st_mode) or stat.S_ISDIR(kind.st_mode)):
@@ -79,13 +76,12 @@ def parse_toml(text: str) -> dict[str, Any]:
 
 
 def _is_table_of_numbers(text: str) -> bool:
-    """Whether the first line of `text` has cells, as in a CSV file, but no key of TOML."""
     first = text.lstrip("\ufeff \t\r\n").partition("\n")[0]
     return "=" not in first and "[" not in first and any(sign in first for sign in ",;\t")
 
 
 def _likely_cause(error: tomllib.TOMLDecodeError, text: str) -> str:
-    """The likely cause of a TOML error and its remedy; "" if there is none."""
+    """The likely cause of a TOML error and its remedy, or ""."""
     if twice := re.match(r"Cannot declare \('(\w+)',\) twice", str(error)):
         return f"; for several tables, begin each of them with [[{twice[1]}]]"
     place = re.search(r"at line (\d+), column", str(error))
@@ -136,7 +132,7 @@ def parse_case(text: str) -> Case:
 
 
 def _other_kind(content: dict[str, Any]) -> str:
-    """Say which command reads `content` if it is the file of a mixture or study; otherwise ""."""
+    """The command for `content`, if it is a mixture or study; otherwise ""."""
     if "materials" in content and "first" not in content:
         return "this is a mixture: use `restitution mixture FILE`"
     if "sweep" in content:
@@ -145,17 +141,13 @@ def _other_kind(content: dict[str, Any]) -> str:
 
 
 def problems_of(content: dict[str, Any]) -> dict[str, str]:
-    """Check the parsed tables of a case file; return a message for each wrong key.
-
-    A message about the whole file has the key "". The result is empty if the case is valid.
-    """
+    """A message for each wrong key of the parsed tables of a case file; "" is the whole file."""
     try:
         Case.model_validate(content)
     except ValidationError as error:
-        return {
-            (key := _key_of(each)): _in_words(each, Case).removeprefix(f"{key}: ")
-            for each in reversed(error.errors(include_url=False))
-        }
+        problems = reversed(error.errors(include_url=False))
+        texts = ((problem, *_in_words(problem, Case)) for problem in problems)
+        return {key or _key_of(problem): words for problem, key, words in texts}
     except CaseError as error:
         return {"": str(error)}
     return {}
@@ -164,18 +156,17 @@ def problems_of(content: dict[str, Any]) -> dict[str, str]:
 def in_words(error: ValidationError, root: type[Table] = Case, before: str = "") -> str:
     """Describe the problems of a file in one line: the first problem, then the other wrong keys.
 
-    `root` is the class of the table that was checked. `before` is the dotted path of this table in
-    the file, and is empty for the whole file.
+    `root` is the class of the table that was checked, `before` the path of this table in the file.
     """
     # Report unknown keys first, because a misspelt key is the usual reason for a missing key.
     problems = error.errors(include_url=False)
     problems.sort(key=lambda problem: problem["type"] != "extra_forbidden")
     where = f"{before}." if before else ""
-    return where + _in_words(problems[0], root) + _others(problems)
+    key, words = _in_words(problems[0], root)
+    return where + (f"{key}: {words}" if key else words) + _others(problems)
 
 
 def _others(problems: list[Any]) -> str:
-    """List the other wrong keys, up to three by name, for the end of a message."""
     names = list(dict.fromkeys(_key_of(problem) for problem in problems))[1:]
     if not names:
         return ""
@@ -215,47 +206,41 @@ def _key_of(problem: Any) -> str:
     return ".".join(names)
 
 
-def _in_words(problem: Any, root: type[Table]) -> str:
-    """Describe a pydantic error in one line: the key, the problem and the remedy."""
+def _in_words(problem: Any, root: type[Table]) -> tuple[str, str]:
+    """The key of a pydantic error, and the problem and its remedy in one line."""
     keys, key = _keys(problem), _key_of(problem)
-    prefix = f"{key}: " if key else ""
     kind, context = problem["type"], problem.get("ctx", {})
     if kind == "extra_forbidden":
         known = _keys_of(keys[:-1], problem["loc"], root)
         hint = f"known keys: {', '.join(known)}" if known else "remove it"
         if len(keys) > 1 and keys[-1] in root.model_fields:
-            return f"{key}: unknown key; write {keys[-1]} above the first [table] of the file"
+            return key, f"unknown key; write {keys[-1]} above the first [table] of the file"
         if keys[-1] == "diameter" and "radius" in known:
-            return f"{key}: unknown key; give radius = half the diameter"
-        return f"{key}: unknown key; {did_you_mean(keys[-1], known) or hint}"
+            return key, "unknown key; give radius = half the diameter"
+        return key, f"unknown key; {did_you_mean(keys[-1], known) or hint}"
     if kind == "missing":
-        what = f"the table [{key}]" if len(keys) == 1 else f'the key "{key}"'
-        return f"{what} is missing"
+        return "", (f"the table [{key}]" if len(keys) == 1 else f'the key "{key}"') + " is missing"
     if kind == "union_tag_not_found":
         kinds = ", ".join(f'"{kind}"' for kind in _KINDS)
-        return f"{key}.kind is missing; write one of {kinds}"
+        return "", f"{key}.kind is missing; write one of {kinds}"
     if kind == "union_tag_invalid":
-        return f"{key}.kind: {shown(context['tag'])} is not one of {context['expected_tags']}"
+        tag = f"{shown(context['tag'])} is not one of {context['expected_tags']}"
+        return f"{key}.kind", tag
     if kind == "value_error":
-        return f"{prefix}{context['error']}"
+        return key, str(context["error"])
     should_be = _WORDS.get(kind, problem["msg"].removeprefix("Input should be "))
-    return f"{prefix}{shown(problem['input'])} should be {should_be}"
+    return key, f"{shown(problem['input'])} should be {should_be}"
 
 
-def _keys_of(path: list[str], loc: tuple[Any, ...], root: type[Table]) -> list[str]:
+def _keys_of(path: list[str], loc: tuple[Any, ...], root: type[BaseModel]) -> list[str]:
     """The valid keys of the table at `path`, as written in the file."""
-    model = _table_at(path, loc) if path else root
-    fields = {} if model is None else model.model_fields
-    return [field.alias or name for name, field in fields.items()]
-
-
-def _table_at(path: list[str], loc: tuple[Any, ...]) -> type[Table] | None:
-    """The class of the table at `path` in a case file; None if there is no such table."""
-    if path[:2] == ["roughness", "crop"]:
-        return CropTable
-    if path[0] == "roughness":
-        return MeasuredRoughness if "measured" in loc else GeneratedRoughness
-    field = Case.model_fields.get(path[0])
-    kinds = (field.annotation, *get_args(field.annotation)) if field else ()
-    tables = (kind for kind in kinds if isinstance(kind, type) and issubclass(kind, Table))
-    return next(tables, None)
+    for key in path:
+        fields = {rule.name: rule.field for rule in rules(root)}
+        tables = tables_in(fields[key]) if key in fields else []
+        if not tables:
+            return []
+        # The path of a pydantic error also contains the kind of a table of several kinds.
+        kinds = (next(rules(table)).words for table in tables)
+        of_kind = [table for table, words in zip(tables, kinds, strict=True) if {*words} & {*loc}]
+        root = (of_kind or tables)[0]
+    return [rule.name for rule in rules(root)]

@@ -11,11 +11,9 @@ from restitution.theory import JKR, FirstYield, ThorntonNing
 
 
 def deepest_indentation(case: Case) -> float:
-    """The deepest indentation (m) of the case; an estimate if the case has no [indentation].
+    """The deepest indentation (m); without [indentation], that of smooth Thornton–Ning bodies.
 
-    For loads and impact velocities, the estimate is the indentation of smooth bodies that yield
-    according to Thornton and Ning. The result is NaN for a periodic case that prescribes loads or
-    pressures.
+    NaN for a periodic case without [indentation].
     """
     last, pair = case.depths()[-1], case.pair()
     if case.indentation is not None:
@@ -33,13 +31,7 @@ def deepest_indentation(case: Case) -> float:
 
 
 def derived_quantities(case: Case, contact: Contact) -> dict[str, float | None]:
-    """Return the quantities that `summary.json` lists as derived from the case.
-
-    They describe the two bodies, first yield and adhesion. They also include the contact radius
-    predicted for smooth bodies, to be compared with the size of the grid and its cells. A quantity
-    that does not apply to the case is None. The key of a quantity with a unit ends with its SI
-    unit. `_of_period` lists the quantities of a periodic contact.
-    """
+    """The derived quantities of `summary.json`, by name and SI unit; None if one does not apply."""
     pair, p_y = contact.pair, contact.hardness
     if contact.periodic:
         return _of_period(contact)
@@ -72,11 +64,7 @@ def derived_quantities(case: Case, contact: Contact) -> dict[str, float | None]:
 
 
 def _of_period(contact: Contact) -> dict[str, float | None]:
-    """Derived quantities of a periodic contact.
-
-    `reduced_pressure_Pa` is the contact modulus E* times the rms slope. It is the natural scale of
-    the nominal pressure.
-    """
+    """For a periodic contact; `reduced_pressure_Pa` is E* times the rms slope."""
     elastic, (wide, long) = math.isinf(contact.hardness), contact.grid.size
     adhesion = contact.adhesion
     return {

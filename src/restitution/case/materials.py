@@ -35,9 +35,8 @@ _ALIKE = 0.8  # least similarity of a suggested name: 0.77 would suggest halite 
 class Property(Table, Generic[Quantity]):
     """One quantity of a material, in SI units.
 
-    `low` and `high` are the lowest and the highest value found in the sources, for any grade of the
-    material. `verified` means that `value` was read in the source or in a copy of it, or computed
-    from values read there.
+    `low` and `high` are the extremes in the sources, for any grade. `verified` means that `value`
+    was read in the source, or computed from values read there.
     """
 
     value: Quantity
@@ -107,12 +106,12 @@ def material(name: str) -> Material:
         CaseError: The library has no material of this name.
     """
     known = {
-        _plain(each): found
-        for found in materials().values()
-        for each in (found.key, *found.aliases)
+        _plain(word): entry
+        for entry in materials().values()
+        for word in (entry.key, *entry.aliases)
     }
-    if found := known.get(_plain(name)):
-        return found
+    if entry := known.get(_plain(name)):
+        return entry
     hint = _mentions(_plain(name)) or did_you_mean(_plain(name), known, _ALIKE)
     raise CaseError(
         f"{shown(name)} is not a material of the library; {hint}{' ' if hint else ''}"
@@ -211,7 +210,6 @@ def materials() -> dict[str, Material]:
 
 
 def _mentions(word: str) -> str:
-    """Name the materials whose name or note contains `word`; "" if there are none, or many."""
     pattern = re.compile(rf"(?<![a-z]){re.escape(word)}(?![a-z])")
     in_names, in_notes = (
         [key for key, one in materials().items() if pattern.search(_plain(getattr(one, field)))]

@@ -78,22 +78,13 @@ def generated_bytes(grid: Grid, *, normal: bool, periodic: bool) -> float:
 
 
 def measured_bytes(grid: Grid, scan: Grid, *, twin: bool) -> float:
-    """Memory (bytes) for placing a scan on `grid` or, if `twin`, for making a twin of the scan.
-
-    A twin is a random surface with the statistics of the scan. `scan` is the grid of the pixels of
-    the scan.
-    """
+    """Memory (bytes) for placing a scan (`scan`: its pixels) on `grid`, or for its `twin`."""
     size = _PROCESS + _SURFACE * nodes_of(grid) + _SCAN * nodes_of(scan)
     return size + _BAND * _band_nodes(grid, scan) if twin else size
 
 
 def _band_nodes(grid: Grid, scan: Grid) -> float:
-    """Number of nodes of the finest grid on which a twin is adjusted; an upper estimate.
-
-    A twin is a random surface with the statistics of a scan. Its waves are adjusted on several
-    grids (see `surfaces.twin`). `grid` is the grid of the twin, and `scan` is the grid of the
-    pixels of the scan.
-    """
+    """Nodes of the finest grid on which a twin is adjusted (`surfaces.twin`), at most."""
     repeats = [max(1.0, s / g) for s, g in zip(scan.size, grid.size, strict=True)]
     ratio = min(h / pixel for h, pixel in zip(grid.spacing, scan.spacing, strict=True))
     coarser = 2.0 ** max(math.floor(math.log2(ratio)), 0)

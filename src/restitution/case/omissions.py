@@ -21,10 +21,7 @@ def omissions(case: Case) -> list[str]:
 
 
 def default_yield(source: str) -> str:
-    """State where a yield pressure that the case leaves out comes from; empty if it is given.
-
-    `source` is that of `Case.yielding`, also stored as `model.yield_pressure` of a summary.
-    """
+    """Where a yield pressure that the case leaves out comes from (`source` of `Case.yielding`)."""
     if source in ("given", "elastic"):
         return ""
     return (
@@ -50,18 +47,13 @@ def _no_adhesion(case: Case) -> str | None:
 
 
 def _library(case: Case) -> str:
-    """Mention the value of the materials library, if it has one for the materials of the case."""
     names = [body.material for body in case.bodies().values()]
     known = all(name in adhesive() for name in names)
     return ', "library" for the one of the materials library' if known else ""
 
 
 def _lowest_velocity(case: Case, mass: float) -> float:
-    """The lowest impact velocity (m/s) of the case.
-
-    If the case prescribes loads or indentations, the result is the impact velocity at which smooth
-    elastic bodies would reach the smallest load or indentation.
-    """
+    """The lowest impact velocity (m/s); for loads and indentations, of smooth elastic bodies."""
     first, pair = case.depths()[0], case.pair()
     if case.impact is not None:
         return first

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable
+from dataclasses import dataclass
 from decimal import Decimal
-from functools import lru_cache
-from typing import Annotated, Any, NamedTuple
+from functools import lru_cache, partial
+from typing import Annotated, Any, Literal, NamedTuple
 
 import pint
-from pydantic import BeforeValidator
+from pydantic import GetCoreSchemaHandler
+from pydantic_core import core_schema
 
 from restitution.errors import shown
 
@@ -21,37 +24,35 @@ _UNIT = r"[^\W\d]+(?:\s*(?:\^|\*\*)\s*-?\d|\d)?"
 _POWER = re.compile(r"(?<=[^\W\d])(\d)")
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*((?:{_UNIT})(?:\s*[*/·]\s*{_UNIT})*)\s*", re.UNICODE)
 
+_STRENGTHS = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*(?:\*\s*)?Y\s*")
+# A factor, and the strength of a body that it multiplies.
+YieldRule = tuple[float, Literal["yield_strength", "hardness"]]
 # Largest number of characters of a quantity. The patterns and the unit parser would need too much
 # time for longer texts.
 LONGEST = 100
 
 
-class _Quantity(NamedTuple):
-    """A physical quantity of the case file.
-
-    `usual` lists the usual units. If a unit differs from one of them only in capital letters, the
-    error message suggests the usual unit. `bounds` is the plausible range in SI units. A value
-    outside this range almost certainly has a wrong unit, and could make formulas overflow or
-    underflow.
-    """
+class Quantity(NamedTuple):
+    """A physical quantity of the case file."""
 
     name: str
     example: str
-    usual: str
+    usual: str  # usual units; suggested for a unit that differs only in capital letters
+    # Plausible range (SI). A value outside has a wrong unit, and could make formulas overflow.
     bounds: tuple[float, float] = (-math.inf, math.inf)
 
 
-_QUANTITIES = {  # by SI unit
-    "m": _Quantity("a length", "0.25 um", "m cm mm um µm nm pm", (1e-12, 1e3)),
-    "Pa": _Quantity("a pressure", "750 MPa", "Pa kPa MPa GPa N/mm^2 N/mm2", (1.0, 1e15)),
-    "kg/m^3": _Quantity("a density", "7850 kg/m^3", "kg/m^3 kg/m3 g/cm^3 g/cm3", (1e-2, 1e6)),
-    "N": _Quantity("a force", "0.1 N", "N kN mN uN µN nN", (1e-15, 1e12)),
-    "J/m^2": _Quantity(
+QUANTITIES = {  # by SI unit
+    "m": Quantity("a length", "0.25 um", "m cm mm um µm nm pm", (1e-12, 1e3)),
+    "Pa": Quantity("a pressure", "750 MPa", "Pa kPa MPa GPa N/mm^2 N/mm2", (1.0, 1e15)),
+    "kg/m^3": Quantity("a density", "7850 kg/m^3", "kg/m^3 kg/m3 g/cm^3 g/cm3", (1e-2, 1e6)),
+    "N": Quantity("a force", "0.1 N", "N kN mN uN µN nN", (1e-15, 1e12)),
+    "J/m^2": Quantity(
         "a work of adhesion", "0.09 J/m^2", "J/m^2 J/m2 mJ/m^2 mJ/m2 N/m mN/m", (1e-9, 1e4)
     ),
-    "rad": _Quantity("an angle", "30 deg", "deg rad"),
-    "rad/s": _Quantity("a spin", "100 rad/s", "rad/s deg/s rpm"),
-    "m/s": _Quantity("a velocity", "0.5 m/s", "m/s cm/s mm/s um/s km/h", (1e-9, 1e4)),
+    "rad": Quantity("an angle", "30 deg", "deg rad"),
+    "rad/s": Quantity("a spin", "100 rad/s", "rad/s deg/s rpm"),
+    "m/s": Quantity("a velocity", "0.5 m/s", "m/s cm/s mm/s um/s km/h", (1e-9, 1e4)),
 }
 # Names of units of angle; the unit of a spin must contain one of them.
 _TURNS = ("radian", "degree", "turn", "revolution")
@@ -65,19 +66,16 @@ def _registry() -> pint.UnitRegistry[float]:
 
 
 def unit_factors() -> dict[str, dict[str, float]]:
-    """Return the factors that convert the usual units to each SI unit.
-
-    For example, `unit_factors()["m"]["um"]` is 1e-6.
-    """
+    """The usual units of each SI unit, in this unit: `unit_factors()["m"]["um"]` is 1e-6."""
     return {
         si: {name: read_quantity(f"1 {name}", si) for name in kind.usual.split()}
-        for si, kind in _QUANTITIES.items()
+        for si, kind in QUANTITIES.items()
     }
 
 
 def read_quantity(value: object, unit: str) -> float:
     """Convert `value`, such as "500 um", to the SI `unit`. Raises `ValueError`."""
-    example = f'write for example "{_QUANTITIES[unit].example}"'
+    example = f'write for example "{QUANTITIES[unit].example}"'
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         raise ValueError(f"{shown(value)} has no unit; {example}")
     if not isinstance(value, str):
@@ -93,7 +91,7 @@ def read_quantity(value: object, unit: str) -> float:
         factor = float(quantity.m_as(unit))
     except _UNIT_ERRORS as error:
         known = isinstance(error, pint.DimensionalityError)
-        problem = f"is not {_QUANTITIES[unit].name}" if known else "has an unknown unit"
+        problem = f"is not {QUANTITIES[unit].name}" if known else "has an unknown unit"
         remedy = _other_case(match[2], unit) or example
         raise ValueError(f"{shown(value)} {problem}; {remedy}") from None
     if unit == "rad/s" and not any(word in str(quantity.units) for word in _TURNS):
@@ -122,16 +120,13 @@ def scaled(value: str, factor: float, digits: int = 17) -> str:
 
 def _other_case(name: str, unit: str) -> str | None:
     """Suggest a usual unit if `name` differs from it only in capital letters ("gpa")."""
-    usual = _QUANTITIES[unit].usual.split()
-    alike = (each for each in usual if each.lower() == name.lower() and each != name)
-    return next((f"did you mean {each}?" for each in alike), None)
+    usual = QUANTITIES[unit].usual.split()
+    alike = (word for word in usual if word.lower() == name.lower() and word != name)
+    return next((f"did you mean {word}?" for word in alike), None)
 
 
 def read_positive(value: Any, unit: str, *, or_zero: bool = False) -> float:
-    """Convert as `read_quantity` does, and require a plausible positive value.
-
-    `or_zero` also allows zero.
-    """
+    """As `read_quantity`, for plausible values above zero or, with `or_zero`, zero."""
     result = read_quantity(value, unit)
     if or_zero and result == 0:
         return 0.0
@@ -139,7 +134,7 @@ def read_positive(value: Any, unit: str, *, or_zero: bool = False) -> float:
         raise ValueError(f"{shown(value)} must not be negative")
     if result <= 0:
         raise ValueError(f"{shown(value)} must be greater than zero")
-    low, high = _QUANTITIES[unit].bounds
+    low, high = QUANTITIES[unit].bounds
     if not low <= result <= high:
         match = _QUANTITY.fullmatch(value)
         hint = _other_case(match[2], unit) if match else None
@@ -161,17 +156,45 @@ def read_impact_angle(value: Any) -> float:
     return result
 
 
-def _positive(unit: str, *, or_zero: bool = False) -> BeforeValidator:
-    return BeforeValidator(lambda value: read_positive(value, unit, or_zero=or_zero))
+def read_yield_pressure(value: Any, unit: str) -> float | YieldRule:
+    """A pressure (inf for "elastic") or a rule: "2.8 Y" gives (2.8, "yield_strength")."""
+    if value == "elastic":
+        return math.inf
+    if value == "hardness":
+        return 1.0, "hardness"
+    short = isinstance(value, str) and len(value) <= LONGEST
+    if not (short and (match := _STRENGTHS.fullmatch(value))):
+        return read_positive(value, unit)
+    if not 0.5 <= (factor := float(match[1])) <= 10:
+        raise ValueError(
+            f"{shown(value)} is not a plausible contact pressure; the factor of Y must be from 0.5 "
+            "to 10 (usually 1.6 to 3)"
+        )
+    return factor, "yield_strength"
 
 
-Length = Annotated[float, _positive("m")]
-Pressure = Annotated[float, _positive("Pa")]
-Density = Annotated[float, _positive("kg/m^3")]
-SurfaceEnergy = Annotated[float, _positive("J/m^2", or_zero=True)]
-Force = Annotated[float, _positive("N")]
-Velocity = Annotated[float, _positive("m/s")]
-Angle = Annotated[float, BeforeValidator(lambda value: read_quantity(value, "rad"))]
-ImpactAngle = Annotated[float, BeforeValidator(read_impact_angle)]
-Spin = Annotated[float, BeforeValidator(lambda value: read_quantity(value, "rad/s"))]
-Position = Annotated[float, BeforeValidator(lambda value: read_quantity(value, "m"))]
+@dataclass(frozen=True)
+class Unit:
+    """Makes pydantic read texts such as "500 um" into numbers in the unit `si`."""
+
+    si: str
+    read: Callable[[Any, str], Any] = read_positive
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        return core_schema.no_info_before_validator_function(
+            lambda value: self.read(value, self.si), handler(source)
+        )
+
+
+Length = Annotated[float, Unit("m")]
+Pressure = Annotated[float, Unit("Pa")]
+Density = Annotated[float, Unit("kg/m^3")]
+SurfaceEnergy = Annotated[float, Unit("J/m^2", partial(read_positive, or_zero=True))]
+Force = Annotated[float, Unit("N")]
+Velocity = Annotated[float, Unit("m/s")]
+Angle = Annotated[float, Unit("rad", read_quantity)]
+ImpactAngle = Annotated[float, Unit("rad", lambda value, _: read_impact_angle(value))]
+Spin = Annotated[float, Unit("rad/s", read_quantity)]
+Position = Annotated[float, Unit("m", read_quantity)]

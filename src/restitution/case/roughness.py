@@ -12,6 +12,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from restitution.case import needs
 from restitution.case.quantities import Angle, Length, Position
+from restitution.case.rulebook import Input, Key, key
 from restitution.case.schema import PairOf, Table
 from restitution.errors import SurfaceError, shown
 from restitution.numerics.grid import Grid
@@ -28,7 +29,8 @@ from restitution.surfaces import (
 from restitution.surfaces.cache import kept
 from restitution.surfaces.defects import noted
 from restitution.surfaces.extend import Extension
-from restitution.surfaces.generate import RoughnessKind
+from restitution.surfaces.generate import WAVES, RoughnessKind
+from restitution.surfaces.level import Levelling
 from restitution.surfaces.reading.scan import UNITS, in_metres
 from restitution.surfaces.refine import divided
 from restitution.surfaces.refused import Code, RefusedSurfaceError
@@ -69,7 +71,6 @@ _REMEDIES: dict[Code, str] = {
 
 
 def _range(value: Any) -> Any:
-    """Convert a list of two positions to a tuple."""
     if not isinstance(value, list) or len(value) != 2:
         raise ValueError(f"{shown(value)} should be a list of two positions")
     return tuple(value)
@@ -85,46 +86,101 @@ Range = Annotated[tuple[Position, Position], BeforeValidator(_range), AfterValid
 
 
 def _unit_of_length(value: str) -> str:
-    """Require the name of a unit of length."""
     if in_metres(1.0, value) is None:
         raise ValueError(f"{shown(value)} is not a unit of length; give {UNITS}")
     return value
 
 
 Realisations = Annotated[int, Field(ge=1, le=MOST_REALISATIONS)]
+REALISATIONS = Key(
+    "number of twins, or of places of the scan",
+    page=Input(
+        "Surfaces",
+        hint="the curve is the mean over them; while a slider moves, only the first is computed",
+        slider=(1, 16),
+    ),
+)
 Seed = Annotated[int, Field(ge=0, lt=2**63)]
+
+
+def _kinds_with(wave: str) -> tuple[str, ...]:
+    return "kind", *(kind for kind, waves in WAVES.items() if wave in waves)
 
 
 @contextmanager
 def _naming(keys: Mapping[str, str]) -> Iterator[None]:
-    """Reword errors of the package `surfaces` in terms of the case file.
-
-    `keys` maps arguments of functions to keys of the file.
-    """
+    """Name keys (`keys`, by argument) and remedies of the case file in errors of `surfaces`."""
     try:
         yield
     except RefusedSurfaceError as error:
         raise SurfaceError(f"{error.fact}; {_REMEDIES[error.code]}") from None
     except SurfaceError as error:
-        argument, colon, text = str(error).partition(":")
-        raise SurfaceError(keys.get(argument, argument) + colon + text) from None
+        raise error.renamed(keys) from None
 
 
 class GeneratedRoughness(Table):
     """The table `[roughness]` with `kind` exponential, gaussian or self-affine."""
 
-    kind: RoughnessKind
-    rms: Length
-    seed: Seed
-    realisations: Realisations = 1
-    correlation_length: Annotated[tuple[Length, Length], PairOf] | None = None
-    lay: Angle = 0.0
-    hurst: float | None = None
-    rolloff: Length | None = None
-    shortest: Length | None = None
-    skewness: float = 0.0
-    kurtosis: float = 3.0
-    periodic: bool = True
+    kind: RoughnessKind = key(
+        ...,
+        "kind of the autocorrelation or of the spectrum",
+        page=Input("Roughness", empty="smooth"),
+    )
+    rms: Length = key(
+        ..., "Rq, met exactly", page=Input("Rq", slider=(1e-9, 1e-5), initial="0.1 um")
+    )
+    correlation_length: Annotated[tuple[Length, Length], PairOf] | None = key(
+        None,
+        "distance at which the autocorrelation has fallen to 10 %; one value, or two (along "
+        "the lay and across it); at least one grid spacing, and at most half the size of the "
+        "grid",
+        default="required unless self-affine",
+        only=_kinds_with("correlation_length"),
+        page=Input("Correlation length", slider=(1e-8, 1e-4), initial="2 um"),
+    )
+    lay: Angle = key(
+        0.0,
+        "direction of the first correlation length, from the x axis",
+        default='`"0 deg"`',
+        only=_kinds_with("lay"),
+    )
+    hurst: float | None = key(
+        None,
+        "Hurst exponent H, above 0 and up to 1: the power spectral density falls as q^−2(H+1)",
+        default="required if self-affine",
+        only=_kinds_with("hurst"),
+        page=Input("Hurst exponent", slider=(0.05, 0.99), initial=0.8),
+    )
+    rolloff: Length | None = key(
+        None,
+        "wavelength above which the spectrum is flat",
+        default="size of the grid",
+        only=_kinds_with("rolloff"),
+        page=Input("Roll-off wavelength", slider=(1e-8, 1e-4), initial="10 um"),
+    )
+    shortest: Length | None = key(
+        None,
+        "waves shorter than this are left out",
+        default="two grid spacings",
+        page=Input("Shortest wavelength", slider=(1e-9, 1e-5), more=True),
+    )
+    skewness: float = key(0.0, "skewness of the heights")
+    kurtosis: float = key(
+        3.0, "kurtosis of the heights (normal distribution: 3); at least skewness² + 1.1"
+    )
+    periodic: bool = key(True, "whether the heights at opposite edges of the surface match")
+    seed: Seed = key(
+        ..., "seed of the random numbers", page=Input("Seed", slider=(0, 100), initial=1)
+    )
+    realisations: Realisations = key(
+        1,
+        replace(
+            REALISATIONS,
+            meaning="number of surfaces, with the seeds `seed`, `seed` + 1, …: `run` then computes "
+            "the mean, the standard deviation and the confidence interval of COR, see "
+            "[results](results.md)",
+        ),
+    )
 
     def variant(self, number: int) -> Self:
         """Return the table of a single surface, with the seed increased by `number`."""
@@ -134,12 +190,17 @@ class GeneratedRoughness(Table):
         """Generate the surface on `grid` and interpolate it to cells `factor` times smaller."""
         fine = divided(grid, factor)
         normal = (self.skewness, self.kurtosis) == (0.0, 3.0)
-        made = needs.generated_bytes(grid, normal=normal, periodic=self.periodic)
-        needs.require(max(made, needs.generated_bytes(fine, normal=True, periodic=True)), fine)
-        asked = self.model_dump(exclude={"realisations"})
-        key = {"generated": asked, "nodes": grid.nodes, "spacing": grid.spacing, "refine": factor}
-        with _naming({argument: f"roughness.{argument}" for argument in asked}):
-            return kept(key, lambda: refine(generate_surface(grid, **asked), factor))
+        needed = needs.generated_bytes(grid, normal=normal, periodic=self.periodic)
+        needs.require(max(needed, needs.generated_bytes(fine, normal=True, periodic=True)), fine)
+        waves = self.model_dump(exclude={"realisations"})
+        made_from = {
+            "generated": waves,
+            "nodes": grid.nodes,
+            "spacing": grid.spacing,
+            "refine": factor,
+        }
+        with _naming({argument: f"roughness.{argument}" for argument in waves}):
+            return kept(made_from, lambda: refine(generate_surface(grid, **waves), factor))
 
 
 class CropTable(Table):
@@ -152,50 +213,110 @@ class CropTable(Table):
 class MeasuredRoughness(Table):
     """The table `[roughness]` with `kind = "measured"`."""
 
-    kind: Literal["measured"]
-    file: Annotated[str, Field(min_length=1)]
-    channel: Annotated[int, Field(ge=0)] | None = None
-    size: Annotated[tuple[Length, Length], PairOf] | None = None
-    height_unit: Annotated[str, AfterValidator(_unit_of_length)] | None = None
-    undefined: Literal["error", "interpolate"] = "error"
-    crop: CropTable = CropTable()
-    outliers: Annotated[float, Field(gt=0)] | None = None
-    detrend: Literal["none", "center", "tilt", "curvature"] = "none"
-    extend: Extension | None = None
-    seed: Seed | None = None
-    place: Annotated[int, Field(ge=0, le=MOST_PLACES)] = 0
-    realisations: Realisations = 1
+    kind: Literal["measured"] = key(
+        ..., "a scan", page=Input("", choices=lambda: {"measured": "measured: a scan"})
+    )
+    file: Annotated[str, Field(min_length=1)] = key(
+        ..., "topography file", page=Input("Scan", hint="drop a file onto the page")
+    )
+    channel: Annotated[int, Field(ge=0)] | None = key(
+        None,
+        "number of the height channel",
+        default="the reader's default",
+        page=Input("Channel of the file", more=True),
+    )
+    size: Annotated[tuple[Length, Length], PairOf] | None = key(
+        None,
+        "edge lengths in x and y (or one for both); they replace those in the file, with a "
+        "warning if these differ",
+        default="from the file",
+        page=Input("Edge lengths", hint="if the file lacks them, or is wrong", more=True),
+    )
+    height_unit: Annotated[str, AfterValidator(_unit_of_length)] | None = key(
+        None,
+        'unit of the heights: `"m"`, `"mm"`, `"um"`, `"nm"` or `"pm"`; it replaces the unit in '
+        "the file, with a warning if this differs",
+        default="from the file, or m",
+        page=Input(
+            "Unit of the heights",
+            more=True,
+            empty="as in the file, or m",
+            choices=lambda: {unit: unit for unit in ("um", "nm", "mm", "m", "pm")},
+        ),
+    )
+    undefined: Literal["error", "interpolate"] = key(
+        "error",
+        '`"interpolate"` fills undefined pixels harmonically, up to 20 % of the part that '
+        "`crop` selects",
+        page=Input("Missing pixels", more=True, empty="refuse"),
+    )
+    crop: CropTable = key(
+        CropTable(),
+        '`{ x = ["-4 um", "5 um"], y = [...] }`: the part of the scan that is used, from a '
+        "first to a last `x` and `y` (`x` or `y` may be left out). The coordinates are those "
+        "of the map that `restitution surface` draws of the scan without `crop` (0 in the "
+        "middle of the scan). A range must not extend beyond the scan",
+        default="all",
+    )
+    outliers: Annotated[float, Field(gt=0)] | None = key(
+        None,
+        "pixels whose height above a fitted paraboloid differs from the median of the 5 × 5 "
+        "pixels around them by more than this number of robust standard deviations are "
+        "replaced harmonically; 6 to 10 removes spikes and dust of up to 3 × 3 pixels, and up "
+        "to two slipped lines side by side",
+        page=Input(
+            "Outlier threshold",
+            hint="in standard deviations",
+            slider=(3, 30),
+            logarithmic=True,
+            more=True,
+        ),
+    )
+    detrend: Levelling = key(
+        "none",
+        "what is subtracted: the mean, a plane or a paraboloid, fitted to the part of the scan "
+        "that is used",
+        page=Input("Subtract", initial="curvature", empty="nothing"),
+    )
+    extend: Extension | None = key(
+        None,
+        "for a grid larger than the scan, see below",
+        page=Input("Extend the scan", more=True, empty="no"),
+    )
+    seed: Seed | None = key(
+        None,
+        "seed of the random numbers",
+        default="required for a twin",
+        only=("extend", "twin"),
+        otherwise='seed applies only to extend = "twin"; remove seed, or set place to select '
+        "another part of the scan",
+        page=Input("Seed of the twin", slider=(0, 100), initial=1),
+    )
+    place: Annotated[int, Field(ge=0, le=MOST_PLACES)] = key(
+        0,
+        "number of the point of the scan that lies in the middle of the contact. 0 is the "
+        "centre of the scan; the points 1, 2 … are distributed evenly over the scan. If the "
+        "grid extends beyond an edge of the scan, the mirror image of the scan continues it "
+        "there, and a warning says so",
+        only=("extend", "", "mirror"),
+        otherwise='place does not apply to extend = "twin"; remove place, or vary seed',
+    )
+    realisations: Realisations = key(1, REALISATIONS)
 
     @model_validator(mode="after")
-    def _twins(self) -> Self:
+    def _seeded(self) -> Self:
         if self.extend == "twin" and self.seed is None:
             raise ValueError('extend = "twin" makes a random surface and needs a seed; give a seed')
-        if self.seed is not None and self.extend != "twin":
-            raise ValueError(
-                'seed applies only to extend = "twin"; remove seed, or set place to select another '
-                "part of the scan"
-            )
-        if self.place and self.extend == "twin":
-            raise ValueError('place does not apply to extend = "twin"; remove place, or vary seed')
         return self
 
     def variant(self, number: int) -> Self:
-        """Return a table for one other surface.
-
-        If the surface is a twin (a random surface with the statistics of the scan), `number` is
-        added to `seed`. Otherwise `number` is added to `place`, which selects the part of the scan
-        that is used.
-        """
+        """The table of a single surface: `number` is added to the seed of a twin, or to `place`."""
         if self.seed is None:  # the surface is not a twin
             return self.model_copy(update={"place": self.place + number, "realisations": 1})
         return self.model_copy(update={"seed": self.seed + number, "realisations": 1})
 
     def scan(self, folder: Path) -> Surface:
-        """Read, clean and level the scan, and move it so that a given point is in the middle.
-
-        The key `place` is the number of this point in a fixed sequence (see `surfaces.shift`). The
-        file name is relative to `folder`.
-        """
+        """Read, clean and level the scan, and move it to its `place`; `folder` holds the file."""
         with _naming(_CLEANING_KEYS):
             scan = read_surface(
                 folder / self.file,
@@ -212,16 +333,12 @@ class MeasuredRoughness(Table):
         return place_of(noted(level(scan, self.detrend)), self.place)
 
     def surface(self, grid: Grid | None, folder: Path, factor: int = 1) -> Surface:
-        """Make the roughness on cells `factor` times smaller than those of `grid`.
-
-        If `grid` is None, the pixels of the scan replace the cells of `grid`. Smaller cells resolve
-        shorter waves, but cells smaller than the pixels add no waves.
-        """
+        """Make the roughness on cells `factor` times smaller than those of `grid` or the scan."""
         scan = self.scan(folder)
         grid = grid or scan.grid
         whole = divided(grid, factor)
         needs.require(needs.measured_bytes(whole, scan.grid, twin=self.extend == "twin"), whole)
-        asked = {
+        made_from = {
             "measured": self.model_dump(exclude={"realisations"}),
             "path": str(folder / self.file),
             "sha256": scan.provenance["file_sha256"],
@@ -230,13 +347,10 @@ class MeasuredRoughness(Table):
             "refine": factor,
         }
         with _naming({}):
-            return kept(asked, lambda: self._placed(scan, grid, factor))
+            return kept(made_from, lambda: self._placed(scan, grid, factor))
 
     def _placed(self, scan: Surface, grid: Grid, factor: int) -> Surface:
-        """Place the scan on cells `factor` times smaller than those of `grid`.
-
-        The scan is extended first if the key `extend` is given.
-        """
+        """Place the scan, extended if `extend` is given, on cells `factor` times smaller."""
         if self.extend == "twin":
             # A twin is a random surface with the statistics of the scan. Its waves do not depend on
             # the grid, so evaluate them on the fine grid.
@@ -255,11 +369,9 @@ class MeasuredRoughness(Table):
         return replace(finer, provenance={**finer.provenance, "refined": factor, "refinement": how})
 
     def _steps_to_pixel(self, grid: Grid, pixels: Grid, factor: int) -> int:
-        """Number of parts into which each cell of `grid` is divided along each axis.
+        """Parts, along each axis, into which cells are divided to be no larger than the pixels.
 
-        The scan is placed on these parts. Their number starts at 1 and is doubled until the parts
-        are not larger than the pixels. Doubling ends earlier if the number would no longer divide
-        `factor`.
+        A power of two that divides `factor`.
         """
         steps = 1
         while factor % (2 * steps) == 0 and any(

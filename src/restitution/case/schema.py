@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 from typing import Annotated, Any, ClassVar, Generic, Literal, Self, TypeVar, cast
 
 import numpy as np
@@ -17,6 +18,7 @@ from pydantic import (
 )
 
 from restitution.case.quantities import ImpactAngle, Length, Spin, Velocity
+from restitution.case.rulebook import Input, Key, Rule, key, rules
 from restitution.collision import UnloadingMethod
 from restitution.contact.models import RESTITUTION_ERROR
 from restitution.errors import shown
@@ -30,13 +32,25 @@ _SAME = 1e-9  # largest relative difference of normal velocities that count as e
 
 
 class Table(BaseModel):
-    """Base class of tables: rejects unknown keys and values of a wrong type."""
+    """Base class of tables: rejects unknown keys, values of a wrong type, keys without effect."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, populate_by_name=True)
 
+    @model_validator(mode="after")
+    def _have_effect(self) -> Self:
+        for rule in _conditional(type(self)):
+            value, (other, *allowed) = getattr(self, rule.attribute), rule.key.only
+            if value != rule.field.default and (getattr(self, other) or "") not in allowed:
+                raise ValueError(rule.key.otherwise.format(value=value))
+        return self
+
+
+@cache
+def _conditional(table: type[Table]) -> tuple[Rule, ...]:
+    return tuple(rule for rule in rules(table) if rule.key.otherwise)
+
 
 def _two(value: Any) -> Any:
-    """Make a tuple for the two axes from one value or a list of two values."""
     if not isinstance(value, list):
         return value, value
     if len(value) != 2:
@@ -58,7 +72,6 @@ def _few_enough(nodes: tuple[int, int]) -> tuple[int, int]:
 
 
 def _factors(value: Any) -> int | tuple[int, ...] | str:
-    """Check `refine`: a refinement factor, a list with a factor for each depth, or "auto"."""
     values = value if isinstance(value, list | tuple) else [value]
     known = values and all(type(one) is int and one in FACTORS for one in values)
     if value == "auto" or known:
@@ -73,10 +86,35 @@ def _factors(value: Any) -> int | tuple[int, ...] | str:
 class GridTable(Table):
     """The table `[grid]`. `nodes` and `spacing` may be omitted if a scan defines the grid."""
 
-    nodes: Annotated[tuple[Nodes, Nodes], PairOf, AfterValidator(_few_enough)] | None = None
-    spacing: Annotated[tuple[Length, Length], PairOf] | None = None
-    refine: Annotated[int | tuple[int, ...] | Literal["auto"], PlainValidator(_factors)] = 1
-    periodic: bool = False
+    nodes: Annotated[tuple[Nodes, Nodes], PairOf, AfterValidator(_few_enough)] | None = key(
+        None,
+        "number of nodes along each axis: one value, or two for x and y; at most 2²⁷ nodes in "
+        "all; powers of two are not required",
+        default="required",
+        page=Input("Nodes", hint="along each edge", slider=(64, 1024), logarithmic=True),
+    )
+    spacing: Annotated[tuple[Length, Length], PairOf] | None = key(
+        None,
+        "distance between nodes: one value, or two for x and y",
+        default="required",
+        page=Input("Spacing", slider=(1e-9, 1e-5)),
+    )
+    refine: Annotated[int | tuple[int, ...] | Literal["auto"], PlainValidator(_factors)] = key(
+        1,
+        "1, 2, 4, 8 … 64: every cell is divided into this many cells along x and along y, see "
+        'below. `"auto"` chooses for each depth the coarsest grid that [resolves](resolution.md) '
+        "its contact and its [adhesion](adhesion.md#grid), up to 2²⁴ nodes (2²² with an attraction "
+        "of finite range), so that one run covers three or four decades of velocity. A list gives "
+        "one value for each depth",
+        page=Input("Refine", hint='1, 2, 4, …, or "auto"'),
+    )
+    periodic: bool = key(
+        False,
+        "`true`: two flat bodies with a periodic surface, see [periodic contacts](periodic.md)."
+        " Such a case has no restitution. `refine` must be one number. A case with adhesion "
+        'must use `adhesion = "cohesive"` and `[indentation]`. `realisations`, `[impact]` and '
+        "`[unloading]` are refused",
+    )
 
     @model_validator(mode="after")
     def _whole(self) -> Self:
@@ -89,11 +127,7 @@ class GridTable(Table):
 
     @property
     def factor(self) -> int:
-        """Refinement factor of the grid; 1 for "auto".
-
-        The factor is the number of parts into which a cell is divided along each axis. If `refine`
-        contains a factor for each depth, the factor of the deepest depth is returned.
-        """
+        """Parts into which a cell is divided along each axis (deepest depth); 1 for "auto"."""
         if isinstance(self.refine, tuple):
             return self.refine[-1]
         return 1 if self.refine == "auto" else self.refine
@@ -104,19 +138,40 @@ class GridTable(Table):
 
 
 Quantity = TypeVar("Quantity")
+VALUES = Key(
+    "a list of 1 to 10 000 values, instead of `from`, `to` and `steps` (in `[impact]`, the key is "
+    "`velocity`)",
+    default="–",
+    page=Input(
+        "Values", hint='separated by commas; used instead of "from", "to" and "Steps"', more=True
+    ),
+)
 
 
 class Series(Table, Generic[Quantity]):
-    """A table that prescribes the depths (states of loading), such as `[load]`.
+    """A table that prescribes the depths (states of loading), such as `[load]`."""
 
-    The prescribed values are given as a range with steps or as a list.
-    """
-
-    from_: Annotated[Quantity | None, Field(alias="from")] = None
-    to: Quantity | None = None
-    steps: Annotated[int, Field(gt=0, le=MOST_STEPS)] | None = None
-    scale: Literal["log", "linear"] = "log"
-    values: Annotated[list[Quantity], Field(min_length=1, max_length=MOST_STEPS)] | None = None
+    # The page writes the `label` of the table for {}, and takes its sliders and initial values.
+    from_: Annotated[Quantity | None, Field(alias="from")] = key(
+        None, "first value", default="–", page=Input("{} from")
+    )
+    to: Quantity | None = key(
+        None, "last value, larger than `from`", default="–", page=Input("{} to")
+    )
+    steps: Annotated[int, Field(gt=0, le=MOST_STEPS)] | None = key(
+        None,
+        "number of values, including both ends; at least 2",
+        default="–",
+        page=Input("Steps", slider=(2, 48), initial=24),
+    )
+    scale: Literal["log", "linear"] = key(
+        "log",
+        "spacing of the values",
+        page=Input("Spacing of the steps", more=True, empty="logarithmic"),
+    )
+    values: Annotated[list[Quantity], Field(min_length=1, max_length=MOST_STEPS)] | None = key(
+        None, VALUES
+    )
 
     list_key: ClassVar[str] = "values"
 
@@ -156,21 +211,33 @@ _Many = Field(min_length=1, max_length=MOST_STEPS)
 
 
 class ImpactTable(Series[Velocity]):
-    """The table `[impact]`: a range of velocities with steps, or the list `velocity`.
-
-    If `angle` or `spin` is given, oblique impacts are computed, too. Each combination of a velocity
-    and an angle defines an oblique impact. The velocity is the relative velocity of the centres,
-    and the angle is measured from the normal. `spin` lists the spin of the first body, or the spins
-    of both bodies.
-    """
+    """The table `[impact]`. With `angle` or `spin`, it also prescribes oblique impacts."""
 
     values: Annotated[
-        list[Velocity] | None,
-        _Listed,
-        Field(alias="velocity", min_length=1, max_length=MOST_STEPS),
-    ] = None
-    angle: Annotated[list[ImpactAngle] | None, _Listed, _Many] = None
-    spin: Annotated[list[Spin] | None, _Listed, _Many] = None
+        list[Velocity] | None, _Listed, Field(alias="velocity", min_length=1, max_length=MOST_STEPS)
+    ] = key(None, VALUES)
+    angle: Annotated[list[ImpactAngle] | None, _Listed, _Many] = key(
+        None,
+        "one angle of impact from the normal (from 0 to below 90°), or a list",
+        page=Input(
+            "Angles of impact",
+            hint="from the normal, separated by commas; adds depths for the normal velocities V "
+            "cos θ",
+            more=True,
+        ),
+    )
+    spin: Annotated[list[Spin] | None, _Listed, _Many] = key(
+        None,
+        "spin of the first body before the impact, or a list of two values, one for each body; "
+        "positive in the sense in which friction turns a body without spin; not in Hz. With a "
+        "spin and no angle the impacts are head-on",
+        default='`"0 rad/s"`',
+        page=Input(
+            "Spin before impact",
+            hint="one value for the first body, or two values for both bodies",
+            more=True,
+        ),
+    )
 
     list_key: ClassVar[str] = "velocity"
 
@@ -211,19 +278,36 @@ class ImpactTable(Series[Velocity]):
         """Normal velocities of all head-on and oblique impacts (m/s), in increasing order."""
         listed = self.velocities()
         normal = [V * math.cos(angle) for V in listed for angle in self.angles()]
-        found: list[float] = []
+        distinct: list[float] = []
         for V in sorted({*listed, *normal}):
-            if not found or V / found[-1] - 1 >= _SAME:
-                found.append(V)
+            if not distinct or V / distinct[-1] - 1 >= _SAME:
+                distinct.append(V)
             elif V in listed:
-                found[-1] = V
-        return found
+                distinct[-1] = V
+        return distinct
 
 
 class UnloadingTable(Table):
     """The table `[unloading]`: how many curves are written, and how unloading is computed."""
 
-    curves: Annotated[int, Field(ge=0, le=MOST_STEPS)] = 3
-    steps: Annotated[int, Field(ge=4, le=MOST_STEPS)] = 16
-    method: UnloadingMethod = "path"
-    restitution_error: Annotated[float, Field(gt=0, lt=1)] = RESTITUTION_ERROR
+    curves: Annotated[int, Field(ge=0, le=MOST_STEPS)] = key(
+        3,
+        "number of depths from which the contact is unloaded step by step, including the "
+        "deepest. If the case has fewer depths, the contact is unloaded from all of them",
+        page=Input("Unloading curves", slider=(0, 24)),
+    )
+    steps: Annotated[int, Field(ge=4, le=MOST_STEPS)] = key(
+        16,
+        "number of steps of each unloading curve without adhesion",
+        page=Input("Steps of each curve", slider=(4, 64)),
+    )
+    method: UnloadingMethod = key(
+        "path",
+        'with adhesion: `"path"` computes the unloading step by step, `"energy-estimate"` '
+        "estimates its work ([adhesion](adhesion.md))",
+        page=Input("Unloading with adhesion", empty="path"),
+    )
+    restitution_error: Annotated[float, Field(gt=0, lt=1)] = key(
+        RESTITUTION_ERROR,
+        "with adhesion: target for the error of COR; it determines the number of steps",
+    )

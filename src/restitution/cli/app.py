@@ -3,12 +3,12 @@
 import webbrowser
 from pathlib import Path
 
+from restitution.app.session import Session, first_content
 from restitution.cli.console import say
 from restitution.errors import CaseError
-from restitution.live.session import Session, first_content
 
 try:
-    from restitution.live.serving import serve_page
+    from restitution.app.serving import serve_page
 except ModuleNotFoundError as error:
     raise CaseError(
         f"the page needs {error.name}, which is not installed; in a checkout, run: "

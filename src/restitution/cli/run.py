@@ -30,6 +30,7 @@ from restitution.cli.console import (
 )
 from restitution.cli.parameters import DeviceName, FigureFormat
 from restitution.cli.signals import received
+from restitution.contact.checks.findings import CLEANING
 from restitution.curve.curve import largest_part
 from restitution.curve.periodic import PeriodicPoint
 from restitution.curve.point import MeanPoint, Point
@@ -45,7 +46,6 @@ from restitution.runs.attraction import in_words
 from restitution.runs.convergence import run_convergence
 from restitution.runs.ensemble import run_realisations
 from restitution.runs.error_budget import steps
-from restitution.runs.messages import CLEANING
 
 # If the total error of COR is at least this value at any depth, the name of the largest part of the
 # error and the remedy are printed.

@@ -12,7 +12,7 @@ from functools import cached_property
 
 from restitution.collision import Collision, UnloadingMethod, collide
 from restitution.contact.contact import Contact
-from restitution.contact.jkr.separation import RESTITUTION_ERROR
+from restitution.contact.models import RESTITUTION_ERROR
 from restitution.contact.path import unloading_path
 from restitution.contact.state import State
 from restitution.curve.point import Point

@@ -112,7 +112,6 @@ def naming_keys(
             finding = replace(finding, needed=(wide, long))
         raise DomainError(finding.text(prescribed)) from error
     except (DomainError, NotConvergedError) as error:
-        argument, _, text = str(error).partition(":")
-        if argument not in _KEYS:
+        if error.argument not in _KEYS:
             raise
-        raise type(error)(f"{_KEYS[argument]}:{text}") from error
+        raise error.renamed(_KEYS) from error

@@ -46,14 +46,16 @@ def crop(surface: Surface, *, x: Range | None = None, y: Range | None = None) ->
         # middle of the scan if the number of pixels is even.
         if low < centres[0] - h or high > centres[-1] + h:
             raise SurfaceError(
-                f"{name}: the range from {_um(low, high)} extends beyond the scan, whose pixels "
-                f"lie from {_um(centres[0], centres[-1])} ({name} is zero in the middle)"
+                f"the range from {_um(low, high)} extends beyond the scan, whose pixels "
+                f"lie from {_um(centres[0], centres[-1])} ({name} is zero in the middle)",
+                argument=name,
             )
         inside = np.flatnonzero((low <= centres) & (centres <= high))
         if inside.size == 0:
             raise SurfaceError(
-                f"{name}: no pixel lies from {_um(low, high)}; choose a wider range, because the "
-                f"pixels are {1e6 * h:.4g} um apart"
+                f"no pixel lies from {_um(low, high)}; choose a wider range, because the "
+                f"pixels are {1e6 * h:.4g} um apart",
+                argument=name,
             )
         part.append(inside)
     grid = Grid((part[0].size, part[1].size), surface.grid.spacing)
@@ -90,7 +92,7 @@ def remove_outliers(surface: Surface, threshold: float) -> Surface:
         SurfaceError: The threshold is not positive, or more than 10 % of the pixels are outliers.
     """
     if not (math.isfinite(threshold) and threshold > 0):
-        raise SurfaceError(f"threshold: {threshold:g} is not a positive number")
+        raise SurfaceError(f"{threshold:g} is not a positive number", argument="threshold")
     height = surface.height
     signed, deviation, _ = local_steps(surface)
     step = np.abs(signed)
@@ -100,9 +102,10 @@ def remove_outliers(surface: Surface, threshold: float) -> Surface:
     count = int(np.count_nonzero(out))
     if count > _MOST * out.size:
         raise SurfaceError(
-            f"threshold: {count / out.size:.0%} of the pixels deviate by more than {threshold:g} "
+            f"{count / out.size:.0%} of the pixels deviate by more than {threshold:g} "
             f"standard deviations, but at most {_MOST:.0%} may be outliers; give a larger "
-            "threshold, or do not remove outliers"
+            "threshold, or do not remove outliers",
+            argument="threshold",
         )
     return replace(
         surface,

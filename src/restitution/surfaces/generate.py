@@ -38,7 +38,7 @@ class Waves(TypedDict, total=False):
     shortest: float | None
 
 
-_WAVES: dict[str, tuple[str, ...]] = {
+WAVES: dict[str, tuple[str, ...]] = {
     "exponential": ("correlation_length", "lay", "shortest"),
     "gaussian": ("correlation_length", "lay", "shortest"),
     "self-affine": ("hurst", "rolloff", "shortest"),
@@ -92,15 +92,17 @@ def generate_surface(
     spectrum = _spectrum(kind, waves)
     if not (math.isfinite(rms) and rms > 0):
         raise SurfaceError(
-            f"rms: {rms:g} m is not a positive length; give the rms height, such as 0.1 um"
+            f"{rms:g} m is not a positive length; give the rms height, such as 0.1 um",
+            argument="rms",
         )
     if seed < 0:
-        raise SurfaceError(f"seed: {seed} is negative; give a whole number from 0 up")
+        raise SurfaceError(f"{seed} is negative; give a whole number from 0 up", argument="seed")
     if not possible(skewness, kurtosis):
         raise SurfaceError(
-            f"kurtosis: no surface can be made with a skewness of {skewness:g} and a kurtosis of "
+            f"no surface can be made with a skewness of {skewness:g} and a kurtosis of "
             f"{kurtosis:g}; kurtosis must be at least skewness² + {LEAST_KURTOSIS:g} = "
-            f"{skewness**2 + LEAST_KURTOSIS:g}"
+            f"{skewness**2 + LEAST_KURTOSIS:g}",
+            argument="kurtosis",
         )
     spectrum.check(grid)
     height, made = _heights(grid, spectrum, seed, (skewness, kurtosis), periodic)
@@ -122,27 +124,30 @@ def generate_surface(
 
 
 def _spectrum(kind: RoughnessKind, waves: Waves) -> Spectrum:
-    if kind not in _WAVES:
+    if kind not in WAVES:
         raise SurfaceError(
-            f"kind: {kind!r} is unknown; choose 'exponential', 'gaussian' or 'self-affine'"
+            f"{kind!r} is unknown; choose 'exponential', 'gaussian' or 'self-affine'",
+            argument="kind",
         )
     for name, value in waves.items():
         if name not in Waves.__annotations__:
             raise TypeError(f"generate_surface() got an unexpected keyword argument {name!r}")
         # A lay of 0 is the default, so it is allowed for every kind.
-        if name not in _WAVES[kind] and value is not None and (name, value) != ("lay", 0):
-            raise SurfaceError(f"{name}: does not belong to kind = {kind!r}; leave it out")
+        if name not in WAVES[kind] and value is not None and (name, value) != ("lay", 0):
+            raise SurfaceError(f"does not belong to kind = {kind!r}; leave it out", argument=name)
     shortest = waves.get("shortest")
     if kind == "self-affine":
         if (hurst := waves.get("hurst")) is None:
             raise SurfaceError(
-                "hurst: missing; a self-affine surface needs a Hurst exponent, such as 0.8"
+                "missing; a self-affine surface needs a Hurst exponent, such as 0.8",
+                argument="hurst",
             )
         return SelfAffine(hurst, waves.get("rolloff"), shortest)
     if (beta := waves.get("correlation_length")) is None:
         raise SurfaceError(
-            f"correlation_length: missing; kind = {kind!r} needs the length over which "
-            "the autocorrelation falls to 10 %, such as 2 um"
+            f"missing; kind = {kind!r} needs the length over which "
+            "the autocorrelation falls to 10 %, such as 2 um",
+            argument="correlation_length",
         )
     both = beta if isinstance(beta, tuple) else (beta, beta)
     return Autocorrelated(kind, both, waves.get("lay") or 0.0, shortest)
@@ -171,8 +176,9 @@ def _heights(
     else:
         if (heights := distribution(z.size, *wanted)) is None:
             raise SurfaceError(
-                f"kurtosis: this program cannot make heights with a skewness of {wanted[0]:g} "
-                f"and a kurtosis of {wanted[1]:g}; give a larger kurtosis"
+                f"this program cannot make heights with a skewness of {wanted[0]:g} "
+                f"and a kurtosis of {wanted[1]:g}; give a larger kurtosis",
+                argument="kurtosis",
             )
         z, made["amplitude_misfit"] = adjusted(z, heights)
         made["method"] = "Schreiber and Schmitz 1996, adjusted amplitudes"

@@ -46,8 +46,9 @@ class Autocorrelated:
             _check_correlation_length(where, beta, spacing, size)
         if self.lay != 0 and self.correlation_length[0] == self.correlation_length[1]:
             raise SurfaceError(
-                "lay: a surface with one correlation length has no lay; give two "
-                "lengths, along the lay and across it, or remove the key lay"
+                "a surface with one correlation length has no lay; give two "
+                "lengths, along the lay and across it, or remove the key lay",
+                argument="lay",
             )
         _check_shortest(self.shortest, grid)
 
@@ -104,8 +105,9 @@ class SelfAffine:
         """Raise `SurfaceError` if a parameter is invalid or `grid` cannot represent these waves."""
         if not 0 < self.hurst <= 1:
             raise SurfaceError(
-                f"hurst: {self.hurst:g} should be above 0 and at most 1; real surfaces often have "
-                "a Hurst exponent of 0.8"
+                f"{self.hurst:g} should be above 0 and at most 1; real surfaces often have "
+                "a Hurst exponent of 0.8",
+                argument="hurst",
             )
         _check_shortest(self.shortest, grid)
         rolloff, shortest = self.rolloff, self.shortest or 2 * max(grid.spacing)
@@ -114,9 +116,10 @@ class SelfAffine:
         _check_positive("rolloff", rolloff)
         if not shortest < rolloff <= max(grid.size):
             raise SurfaceError(
-                f"rolloff: {rolloff * 1e6:g} um is not between the shortest wavelength, "
+                f"{rolloff * 1e6:g} um is not between the shortest wavelength, "
                 f"{shortest * 1e6:g} um, and the size of the domain, {max(grid.size) * 1e6:g} um; "
-                "change rolloff, or leave rolloff out for a power law up to the size of the domain"
+                "change rolloff, or leave rolloff out for a power law up to the size of the domain",
+                argument="rolloff",
             )
 
     def amplitude(self, grid: Grid) -> Array:
@@ -154,20 +157,22 @@ def _wave_numbers(grid: Grid) -> Array:
 def _check_correlation_length(where: str, beta: float, spacing: float, size: float) -> None:
     if not (math.isfinite(beta) and beta > 0):
         raise SurfaceError(
-            f"correlation_length: {beta:g} m {where} is not a positive length; "
-            "give a length such as 5 um"
+            f"{beta:g} m {where} is not a positive length; give a length such as 5 um",
+            argument="correlation_length",
         )
     if beta < spacing:
         raise SurfaceError(
-            f"correlation_length: {beta * 1e6:g} um {where} is below the grid "
+            f"{beta * 1e6:g} um {where} is below the grid "
             f"spacing of {spacing * 1e6:g} um and cannot be resolved; reduce grid.spacing or give "
-            "a longer correlation length"
+            "a longer correlation length",
+            argument="correlation_length",
         )
     if beta > 0.5 * size:
         raise SurfaceError(
-            f"correlation_length: {beta * 1e6:g} um {where} is above half of the "
+            f"{beta * 1e6:g} um {where} is above half of the "
             f"domain of {size * 1e6:g} um; enlarge the domain (grid.nodes) or give a shorter "
-            "correlation length"
+            "correlation length",
+            argument="correlation_length",
         )
 
 
@@ -177,15 +182,17 @@ def _check_shortest(shortest: float | None, grid: Grid) -> None:
     _check_positive("shortest", shortest)
     if not 2 * max(grid.spacing) <= shortest < max(grid.size):
         raise SurfaceError(
-            f"shortest: {shortest * 1e6:g} um is not a wavelength that the grid can represent "
+            f"{shortest * 1e6:g} um is not a wavelength that the grid can represent "
             f"({2e6 * max(grid.spacing):g} to {1e6 * max(grid.size):g} um); reduce grid.spacing, "
-            "or leave out the key 'shortest'"
+            "or leave out the key 'shortest'",
+            argument="shortest",
         )
 
 
 def _check_positive(name: str, wavelength: float) -> None:
     if not (math.isfinite(wavelength) and wavelength > 0):
         raise SurfaceError(
-            f"{name}: {wavelength:g} m is not a positive wavelength; give a wavelength such as "
-            f"10 um, or leave {name} out"
+            f"{wavelength:g} m is not a positive wavelength; give a wavelength such as "
+            f"10 um, or leave {name} out",
+            argument=name,
         )

@@ -49,8 +49,9 @@ def solve_at_force(contact: Contact, force: float, *, start: State | None = None
     capacity = contact.hardness * contact.grid.cell_area * nx * ny
     if force >= capacity:
         raise DomainError(
-            f"force: {force:.4g} N is more than the whole grid carries at the yield pressure "
-            f"({capacity:.4g} N); use a larger grid or a smaller force"
+            f"{force:.4g} N is more than the whole grid carries at the yield pressure "
+            f"({capacity:.4g} N); use a larger grid or a smaller force",
+            argument="force",
         )
     interface = interface_of(contact)
     hertz = float(Hertz(contact.pair.radius, contact.pair.contact_modulus).indentation(force))
@@ -76,9 +77,10 @@ def solve_at_force(contact: Contact, force: float, *, start: State | None = None
     state = solve(contact, indentation, start=start, residual=_SOLVE_RESIDUAL)
     if abs(state.force / force - 1) > FORCE_TOLERANCE:
         raise NotConvergedError(
-            f"force: {force:.6g} N could be reached only to a relative error of "
+            f"{force:.6g} N could be reached only to a relative error of "
             f"{abs(state.force / force - 1):.1e}, at an indentation of {1e9 * indentation:.6g} nm, "
             "because the force jumps there (too few nodes in contact); refine the grid or change "
-            "the force"
+            "the force",
+            argument="force",
         )
     return replace(state, convolutions=state.convolutions + convolutions)

@@ -62,9 +62,10 @@ def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None 
     miss = search.miss(state)
     if miss > max(tolerance, state.work_error / work):
         raise NotConvergedError(
-            f"velocity: {velocity:.6g} m/s could be reached only to a relative error of "
+            f"{velocity:.6g} m/s could be reached only to a relative error of "
             f"{miss:.1e}, at an indentation of {1e9 * depth:.6g} nm, because the work jumps there "
-            "(too few nodes in contact); refine the grid or change the velocity"
+            "(too few nodes in contact); refine the grid or change the velocity",
+            argument="velocity",
         )
     return replace(
         state, convolutions=sum(solved.convolutions for solved in search.states.values())

@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-from live_page import (
+from app_page import (
     COMPLETE,
     NUMBERS,
     RMS,
@@ -38,9 +38,9 @@ def test_no_button_of_a_plot_sends_it_elsewhere(page):
     computed(page)
     titles = page.locator("#cor .modebar-btn")
     expect(titles.first).to_be_attached()
-    found = [each.get_attribute("data-title") for each in titles.all()]
-    assert "Download plot as a PNG" in found
-    assert [each for each in found if "hare" in each or "loud" in each] == []
+    names = [title.get_attribute("data-title") for title in titles.all()]
+    assert "Download plot as a PNG" in names
+    assert [title for title in names if "hare" in title or "loud" in title] == []
 
 
 def test_the_curve_is_drawn_against_indentation_too(page):
@@ -128,7 +128,7 @@ def test_the_cursor_is_moved_by_arrow_keys(page):
     computed(page)
     page.locator("#cursor").focus()
     expect(page.locator("#maps-text")).to_contain_text("At an indentation of 200 nm")
-    text, maps = (page.locator(each).inner_text() for each in ("#cursor-text", "#maps-text"))
+    text, maps = (page.locator(part).inner_text() for part in ("#cursor-text", "#maps-text"))
     page.keyboard.press("ArrowLeft")
     expect(page.locator("#cursor-text")).not_to_have_text(text)
     expect(page.locator("#maps-text")).not_to_have_text(maps)
@@ -153,12 +153,12 @@ def test_nothing_is_wider_than_the_window(app, open_page, width):
 
 def test_every_input_has_a_name(new_page):
     computed(new_page)
-    for each in new_page.locator("details").all():
-        each.evaluate("(details) => { details.open = true; }")
-    found = new_page.locator("input, select, textarea, button").filter(visible=True).all()
-    assert len(found) > 40
-    for each in found:
-        expect(each).to_have_accessible_name(re.compile(r"\S"))
+    for section in new_page.locator("details").all():
+        section.evaluate("(details) => { details.open = true; }")
+    controls = new_page.locator("input, select, textarea, button").filter(visible=True).all()
+    assert len(controls) > 40
+    for control in controls:
+        expect(control).to_have_accessible_name(re.compile(r"\S"))
 
 
 def test_the_keyboard_reaches_the_pin_a_field_and_a_slider(new_page):
@@ -168,4 +168,4 @@ def test_the_keyboard_reaches_the_pin_a_field_and_a_slider(new_page):
         new_page.keyboard.press("Tab")
         reached.append(new_page.locator(":focus").get_attribute("id"))
     wanted = ["pin", "field-first-material", "field-first-radius", "field-first-radius-slider"]
-    assert [each for each in reached if each in wanted] == wanted
+    assert [name for name in reached if name in wanted] == wanted

@@ -15,10 +15,7 @@ Content = dict[str, Any]
 
 
 def content_of(text: str) -> Content:
-    """Parse the case file `text`. Every body becomes a table, and `roughness` a list of tables.
-
-    Raises `CaseError` if `text` is not TOML, or contains a value that JSON cannot represent.
-    """
+    """Parse the case file `text`. Every body becomes a table, and `roughness` a list of tables."""
     content = parse_toml(text)
     try:
         json.dumps(content, allow_nan=False)
@@ -35,10 +32,7 @@ def content_of(text: str) -> Content:
 
 
 def text_of(content: Content) -> str:
-    """Write the tables `content` as a case file.
-
-    Raises `CaseError` if a value cannot be written as TOML.
-    """
+    """Write the tables `content` as a case file."""
     tables = dict(content)
     parts = tables.get("roughness")
     if parts == []:
@@ -54,10 +48,7 @@ def text_of(content: Content) -> str:
 
 
 def problems_in(text: str, folder: Path) -> dict[str, str]:
-    """Check the case file `text`; return an error message for each key at fault.
-
-    The scans that the case names must be in `folder`.
-    """
+    """An error message for each wrong key of the case file `text`, whose scans are in `folder`."""
     try:
         content = parse_toml(text)
     except CaseError as error:

@@ -10,9 +10,9 @@ from tempfile import TemporaryDirectory
 from zipfile import ZIP_DEFLATED, ZipFile
 
 from restitution.api import export, law_of
+from restitution.app.content import content_of, scans_of
 from restitution.errors import CaseError
 from restitution.laws.law_files import write_law
-from restitution.live.content import content_of, scans_of
 from restitution.pages.report import write_report
 from restitution.plots.law import law_figure
 from restitution.plots.run import run_figures
@@ -40,10 +40,7 @@ def case_file(text: str, scans: Path, out: Path) -> Path:
 def take(what: str, results: Path, out: Path, code: str, velocity: str) -> Path:
     """Write the download `what` from the folder `results` into `out`; return the file.
 
-    Only the download "export" uses `code` (the DEM code) and `velocity` (the impact velocity, or ""
-    to leave it out).
-
-    Raises `CaseError` if `what` is unknown.
+    Only "export" uses `code` (the DEM code) and `velocity` (the impact velocity, or "").
     """
     if what == "report":
         return Path(shutil.copy(write_report(results), out))
@@ -59,7 +56,6 @@ def take(what: str, results: Path, out: Path, code: str, velocity: str) -> Path:
 
 
 def _figures(results: Path, folder: Path) -> None:
-    """Write every figure in all formats, and the tables, into `folder`."""
     run = read_run(results)
     for kind in FIGURE_FORMATS:
         write_figures(folder, run_figures(run.dataset), kind)
@@ -68,12 +64,10 @@ def _figures(results: Path, folder: Path) -> None:
 
 
 def _results(results: Path, folder: Path) -> None:
-    """Copy the results, except hidden files, into `folder`."""
     shutil.copytree(results, folder, dirs_exist_ok=True, ignore=shutil.ignore_patterns(".*"))
 
 
 def _law(results: Path, folder: Path) -> None:
-    """Write the restitution law with its fits and figure into `folder`."""
     law = law_of(results)
     write_law(law, folder / "law")
     write_figure(folder / "law" / "law", law_figure(law), "svg")
@@ -88,7 +82,6 @@ _ARCHIVES: dict[str, Callable[[Path, Path], None]] = {
 
 
 def _zipped(archive: Path, fill: Callable[[Path], object]) -> Path:
-    """Make a zip archive of the files that `fill` writes into a folder."""
     with TemporaryDirectory() as name:
         folder = Path(name)
         fill(folder)

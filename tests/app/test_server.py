@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from live_app import App
+from app_process import App
 from tolerance import approx
 
 pytest.importorskip("starlette", reason='the extra "app" is not installed')
@@ -55,9 +55,9 @@ class Client(App):
         text = json.dumps(body) if isinstance(body, dict) else body
         connection.request(method, path, text, sent)
         answer = connection.getresponse()
-        found = answer.status, answer.headers, answer.read().decode(errors="replace")
+        reply = answer.status, answer.headers, answer.read().decode(errors="replace")
         connection.close()
-        return found
+        return reply
 
     def post(self, name, **values):
         """The lines of a request that is answered."""
@@ -312,10 +312,10 @@ def test_a_file_that_was_taken_leaves_nothing_behind(app):
 
 def test_what_cannot_be_taken_is_one_message(app):
     values = {"tab": "a", "content": app.content(), "grids": 1}
-    for asked in ({"what": "secrets", "code": "", "velocity": ""},
+    for wrong in ({"what": "secrets", "code": "", "velocity": ""},
                   {"what": "export", "code": "nothing", "velocity": "1 m/s"},
                   {"what": "export", "code": "lammps", "velocity": "900 m/s"}):  # fmt: skip
-        status, _, text = app.ask("POST", "/api/take", values | asked)
+        status, _, text = app.ask("POST", "/api/take", values | wrong)
         assert status == 200
         assert json.loads(text)["error"]
 

@@ -1,9 +1,7 @@
-"""The process that computes for the page: it answers one request after the other.
+"""The process that computes for the page: it answers one `Request` after the other.
 
-A request is a `Request`; an answer is a series of lines of JSON, then None. A new request replaces
-an older one of the same kind from the same browser tab. If the older request is already being
-computed, it stops at its next depth. A request of any kind that is being computed also stops if its
-tab requests a new curve.
+An answer is a series of lines of JSON, then None. A new request replaces an older one of the same
+kind and browser tab, and a new curve every request of its tab, at its next depth.
 """
 
 from __future__ import annotations
@@ -20,18 +18,18 @@ from pathlib import Path
 from tempfile import mkdtemp
 from typing import Any
 
+from restitution.app.content import problems_in
+from restitution.app.curve import LiveCurves
+from restitution.app.figures import as_json
+from restitution.app.runs import Runs, results_line
 from restitution.errors import RestitutionError, one_line
-from restitution.live.content import problems_in
-from restitution.live.curve import LiveCurves
-from restitution.live.figures import as_json
-from restitution.live.runs import Runs, results_line
 
 REPLACED = as_json({"replaced": True})
 
 
 @dataclass(frozen=True)
 class Request:
-    """A request of one browser tab. The method `kind` of `Worker` answers it, using `values`."""
+    """A request of one browser tab; the method `kind` of `Worker` answers it with `values`."""
 
     number: int
     tab: str
@@ -78,10 +76,7 @@ class Inbox:
                 raise NotWanted
 
     def _listen(self) -> None:
-        """Receive messages until the parent process ends; then end this process.
-
-        A message is a new `Request`, or the `number` of a request that is no longer wanted.
-        """
+        """Receive new requests and numbers of requests given up, until the parent process ends."""
         while True:
             try:
                 message = self._connection.recv()
@@ -94,12 +89,11 @@ class Inbox:
                 else:
                     # If the request is in progress, `check` stops it. If it still waits, drop it.
                     self._given_up.add(message)
-                    for key in [k for k, each in self._waiting.items() if each.number == message]:
+                    for key in [k for k, other in self._waiting.items() if other.number == message]:
                         self._drop(key)
                 self._changed.notify_all()
 
     def _drop(self, key: tuple[str, str]) -> None:
-        """Remove the request that waits under `key`, if any, and answer that it was replaced."""
         dropped = self._waiting.pop(key, None)
         if dropped is not None:
             self.send(dropped.number, REPLACED)
@@ -107,10 +101,7 @@ class Inbox:
 
 
 class Worker:
-    """Answers requests, with a method for each kind.
-
-    Scans are read from the folder `scans`, and files are written into the folder `room`.
-    """
+    """Answers requests, with a method for each kind; see `Process` for the folders."""
 
     def __init__(self, scans: Path, room: Path, check: Callable[[], None]) -> None:
         self._scans, self._room, self._check = scans, room, check
@@ -132,13 +123,9 @@ class Worker:
         """Compute the curve of the case `text`; yield it as lines of JSON while it grows."""
         return self._curves.lines(tab, text, self._scans, self._check)
 
-    def beside(self, tab: str, shown: str) -> Iterator[str]:
-        """Yield the curve of the smooth bodies and the surface that belong to the last live curve.
-
-        The surface comes second. It is left out if the page already shows it. `shown` is the hash
-        of the heights of the surface that the page shows.
-        """
-        return self._curves.beside(tab, shown, self._check)
+    def smooth(self, tab: str, shown: str) -> Iterator[str]:
+        """Yield the smooth curve and the surface that belong to the last live curve."""
+        return self._curves.smooth(tab, shown, self._check)
 
     def maps(self, tab: str, depth: int) -> Iterator[str]:
         """Yield the contact maps at one depth of the last live curve."""
@@ -151,11 +138,8 @@ class Worker:
     def take(
         self, tab: str, text: str, what: str, code: str, velocity: str, grids: int
     ) -> Iterator[str]:
-        """Write the file for the download `what`, and yield its path relative to the folder `room`.
-
-        `code` and `velocity` are the options of the export to a DEM code. `grids` is as in `run`.
-        """
-        from restitution.live import take_away
+        """Write the download `what`, and yield its path relative to the folder `room`."""
+        from restitution.app import take_away
 
         out = Path(mkdtemp(dir=self._room, prefix="take-"))
         if what == "case":
@@ -179,11 +163,11 @@ class Worker:
         yield as_json({"nodes": surface.grid.nodes, "spacing_m": surface.grid.spacing})
 
     def _folder(self, text: str, grids: int) -> Path:
-        def told(words: str) -> None:
+        def report(words: str) -> None:
             self._check()
             self._send(as_json({"progress": words}))
 
-        return self._runs.folder(text, self._scans, told, grids)
+        return self._runs.folder(text, self._scans, report, grids)
 
 
 # What the form can add to a scan that is refused, by the code of the error.

@@ -27,8 +27,8 @@ class App:
 
     def children(self):
         """The numbers of the processes that the server has started."""
-        found = (_parent_of(each) for each in Path("/proc").iterdir() if each.name.isdigit())
-        return [number for number, parent in found if parent == self.process.pid]
+        parents = (_parent_of(entry) for entry in Path("/proc").iterdir() if entry.name.isdigit())
+        return [number for number, parent in parents if parent == self.process.pid]
 
     def workers(self):
         """Those of them that compute."""

@@ -1,9 +1,8 @@
 """The server of the page: it sends static files, and answers requests that only this page can make.
 
-These requests are POST requests with a token. The token is part of the address of the page. An
-Origin header, if there is one, must name this page. The Host header must name this machine. The
-rule for Host prevents DNS rebinding: a web site lets its own domain name refer to this machine, so
-that its pages reach the server.
+These are POST requests with the token in the address of the page. An Origin header must name this
+page. The Host header must name this machine, which prevents DNS rebinding: a web site lets its own
+domain name refer to this machine, so that its pages reach the server.
 """
 
 from __future__ import annotations
@@ -29,11 +28,11 @@ from starlette.responses import FileResponse, JSONResponse, Response, StreamingR
 from starlette.routing import Route
 from starlette.types import ASGIApp, Receive, Scope, Send
 
+from restitution.app.content import content_of, text_of
+from restitution.app.form import form
+from restitution.app.process import Process
+from restitution.app.session import LARGEST_SCAN, Session
 from restitution.errors import CaseError
-from restitution.live.content import content_of, text_of
-from restitution.live.form import form
-from restitution.live.process import Process
-from restitution.live.session import LARGEST_SCAN, Session
 
 _LARGEST_BODY = 2**22  # largest size of a JSON request (bytes)
 _HEADERS = {
@@ -45,9 +44,9 @@ _HEADERS = {
     "Cache-Control": "no-store",
 }
 # Names and types of the values in each kind of request that a worker process answers.
-_ASKED: dict[str, dict[str, type]] = {
+_VALUES: dict[str, dict[str, type]] = {
     "curve": {"tab": str, "content": dict},
-    "beside": {"tab": str, "shown": str},
+    "smooth": {"tab": str, "shown": str},
     "maps": {"tab": str, "depth": int},
     "run": {"tab": str, "content": dict, "grids": int},
     "take": {"tab": str, "content": dict, "what": str, "code": str, "velocity": str, "grids": int},
@@ -57,11 +56,7 @@ Handler = Callable[[Request], Awaitable[Response]]
 
 
 class Server:
-    """Receives the requests of the page and passes each of them to a worker process.
-
-    Live curves, complete runs and runs on finer grids each have their own process, so they do not
-    delay each other.
-    """
+    """Passes the requests of the page to processes: for live curves, complete and finer runs."""
 
     def __init__(self, session: Session) -> None:
         self._session = session
@@ -89,13 +84,12 @@ class Server:
             "start": self._start,
             "content": self._content,
             "text": self._text,
-            **{name: partial(self._stream, name) for name in ("curve", "beside", "maps", "run")},
+            **{name: partial(self._stream, name) for name in ("curve", "smooth", "maps", "run")},
             "take": self._take,
             "upload": self._upload,
         }
 
     def _guarded(self, handler: Handler) -> Handler:
-        """Wrap `handler`: pass on only requests with the token and the right content type."""
 
         async def answer(request: Request) -> Response:
             token = request.headers.get("x-token", "")
@@ -137,7 +131,6 @@ class Server:
         return JSONResponse({"form": form(), "content": self._session.content})
 
     async def _content(self, request: Request) -> Response:
-        """Return the tables of a case file that the user has edited as text."""
         values = await _values(request, {"text": str})
         try:
             return JSONResponse({"content": content_of(values["text"])})
@@ -145,37 +138,29 @@ class Server:
             return JSONResponse({"error": str(error)})
 
     async def _text(self, request: Request) -> Response:
-        """Return the text of a case file; the request contains its tables."""
         values = await _values(request, {"content": dict})
         return JSONResponse({"text": _text(values["content"])})
 
     async def _stream(self, name: str, request: Request) -> Response:
-        """Return a response that streams the answer of a process to the request `name`."""
         return _streamed(request, await self._ask(name, request))
 
     async def _ask(self, name: str, request: Request) -> AsyncGenerator[str]:
-        """Pass the request `name` to a process.
-
-        The value `grids` of the request selects the process: live curves if the request has no such
-        value, complete runs if it is 1, and otherwise finer runs.
-        """
-        values = await _values(request, _ASKED[name])
+        values = await _values(request, _VALUES[name])
         if "content" in values:
             values["text"] = _text(values.pop("content"))
         process = {None: self._live, 1: self._runs}.get(values.get("grids"), self._finer)
         return process.ask(kind=name, **values)
 
     async def _take(self, request: Request) -> Response:
-        """Return a file to download, or an error message as JSON."""
         error = "no file was written"
         async for line in await self._ask("take", request):
-            found = json.loads(line)
-            if "file" in found:
-                file = self._session.room / found["file"]
+            answer = json.loads(line)
+            if "file" in answer:
+                file = self._session.room / answer["file"]
                 tidy = BackgroundTask(shutil.rmtree, file.parent, ignore_errors=True)
                 return FileResponse(file, filename=file.name, background=tidy)
-            problems = (f"{key}: {words}" for key, words in found.get("problems", {}).items())
-            error = found.get("error") or next(problems, error)
+            problems = (f"{key}: {words}" for key, words in answer.get("problems", {}).items())
+            error = answer.get("error") or next(problems, error)
         return JSONResponse({"error": error})
 
     async def _upload(self, request: Request) -> Response:
@@ -187,12 +172,12 @@ class Server:
         except BaseException:
             file.unlink(missing_ok=True)
             raise
-        found: dict[str, Any] = {}
+        scan: dict[str, Any] = {}
         async for line in self._live.ask(request.headers.get("x-tab", ""), "read", file=name):
-            found.update(json.loads(line))
-        if "nodes" not in found and not {"needs_size", "needs_height_unit"} & found.keys():
+            scan.update(json.loads(line))
+        if "nodes" not in scan and not {"needs_size", "needs_height_unit"} & scan.keys():
             file.unlink(missing_ok=True)
-        return JSONResponse({"name": name, **found})
+        return JSONResponse({"name": name, **scan})
 
 
 class OwnHostOnly:
@@ -219,7 +204,7 @@ class OwnHostOnly:
         host, origin = (headers.get(name, b"").decode("latin-1") for name in (b"host", b"origin"))
         if host not in self._hosts:
             return "this server answers only requests from this machine"
-        if origin and origin not in [f"http://{each}" for each in self._hosts]:
+        if origin and origin not in [f"http://{name}" for name in self._hosts]:
             return "this server answers only requests from its own page"
         return ""
 
@@ -245,13 +230,11 @@ def _streamed(request: Request, lines: AsyncGenerator[str]) -> Response:
 
 
 async def _gone(request: Request) -> None:
-    """Return when the page has closed the connection."""
     while (await request.receive())["type"] != "http.disconnect":
         pass
 
 
 async def _values(request: Request, kinds: dict[str, type]) -> dict[str, Any]:
-    """Read the values of a JSON request. Raises `HTTPException` if a name or type is wrong."""
     body = b""
     async for part in request.stream():
         body += part
@@ -277,7 +260,6 @@ def _text(content: dict[str, Any]) -> str:
 
 
 async def _store(request: Request, file: Any) -> None:
-    """Write the body of `request` to `file`. Raises `HTTPException` if the body is too large."""
     size = 0
     try:
         with file.open("xb") as out:
@@ -294,4 +276,4 @@ async def _store(request: Request, file: Any) -> None:
 
 @cache
 def _file(name: str) -> str:
-    return (files("restitution.live") / "static" / name).read_text("utf-8")
+    return (files("restitution.app") / "static" / name).read_text("utf-8")

@@ -39,8 +39,8 @@ def change(page, field, text):
 
 def table(page, name):
     """The texts of a table, row by row."""
-    found = page.locator(f"#{name} tbody tr").all()
-    return [row.locator("td").all_inner_texts() for row in found]
+    rows = page.locator(f"#{name} tbody tr").all()
+    return [row.locator("td").all_inner_texts() for row in rows]
 
 
 def shown(page):

@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from live_page import RMS, change, computed, expect, refusal, rest, table
+from app_page import RMS, change, computed, expect, refusal, rest, table
 
 
 def test_a_length_without_a_unit_is_told_beside_its_field(page, live_case):

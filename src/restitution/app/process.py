@@ -1,7 +1,6 @@
-"""The server's side of a worker process: start it, send requests and receive the answers.
+"""The server's side of a worker process, which starts with the first request after its end.
 
-The process starts with the first request. If it has ended, the next request starts it again. The
-process is terminated if an abandoned request does not stop by itself.
+It is terminated if an abandoned request does not stop by itself.
 """
 
 from __future__ import annotations
@@ -15,8 +14,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from restitution.live.figures import as_json
-from restitution.live.worker import Request, serve
+from restitution.app.figures import as_json
+from restitution.app.worker import Request, serve
 
 _PATIENCE = 1.5  # time (s) that a cancelled request may take to stop
 _LOST = as_json(
@@ -34,10 +33,7 @@ _Lines = asyncio.Queue[str | None]
 
 
 class Process:
-    """One worker process: `ask` sends a request, and yields the lines of the answer.
-
-    The process reads scans from the folder `scans` and writes files into the folder `room`.
-    """
+    """One worker process, which reads scans from `scans` and writes files into `room`."""
 
     def __init__(self, scans: Path, room: Path) -> None:
         self._folders = scans, room
@@ -67,8 +63,6 @@ class Process:
 
 
 class _Running:
-    """A process that was started, and the requests that wait for its answers."""
-
     def __init__(self, scans: Path, room: Path) -> None:
         context = multiprocessing.get_context("spawn")
         self._connection, theirs = context.Pipe()
@@ -117,7 +111,6 @@ class _Running:
             task.cancel()
 
     def _receive(self) -> None:
-        """Pass each answer to its request; tell all waiting requests when the process has ended."""
         with suppress(EOFError, OSError, RuntimeError):  # RuntimeError: the loop is closed
             while True:
                 self._loop.call_soon_threadsafe(self._put, *self._connection.recv())

@@ -1,7 +1,4 @@
-"""The curve that the page redraws while a slider moves.
-
-If the case has several surfaces, only the first is used. The total error is not computed.
-"""
+"""The curve that the page redraws while a slider moves: of the first surface, without errors."""
 
 from __future__ import annotations
 
@@ -11,6 +8,13 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+from restitution.app.figures import (
+    ContactMaps,
+    as_json,
+    curve_figures,
+    live_dataset,
+    surface_content,
+)
 from restitution.case.case import Case
 from restitution.case.case_file import parse_case
 from restitution.case.derived import deepest_indentation
@@ -19,13 +23,6 @@ from restitution.contact.contact import Contact
 from restitution.curve.follow import follow
 from restitution.curve.point import Point
 from restitution.errors import DomainError, RestitutionError
-from restitution.live.figures import (
-    ContactMaps,
-    as_json,
-    curve_figures,
-    live_dataset,
-    surface_content,
-)
 from restitution.runs.depths import CaseUnloading, loads_of
 from restitution.runs.messages import input_warnings, require_possible
 from restitution.runs.refinement import settled, with_chosen_adhesion
@@ -46,8 +43,7 @@ class LiveCurves:
     def lines(self, tab: str, text: str, folder: Path, check: Callable[[], None]) -> Iterator[str]:
         """Compute the curve of the case `text`; yield lines of JSON for the page.
 
-        The scans of the case are in `folder`. `check` raises an exception if the curve is no longer
-        wanted. Depths that were computed are drawn even if other depths fail.
+        The scans of the case are in `folder`. `check` raises if the curve is no longer wanted.
         """
         case = parse_case(text).realisation(0)
         case.require_impact()
@@ -70,12 +66,10 @@ class LiveCurves:
         if curve is not None and len(curve.maps):
             yield curve.maps.line(min(max(depth, 0), len(curve.maps) - 1))
 
-    def beside(self, tab: str, shown: str, check: Callable[[], None]) -> Iterator[str]:
-        """Yield what the page shows beside the last curve of `tab`.
+    def smooth(self, tab: str, shown: str, check: Callable[[], None]) -> Iterator[str]:
+        """Yield the smooth curve and the surface of the last curve of `tab`.
 
-        First comes the curve of the same bodies without roughness, then the surface. The surface is
-        left out if the page already shows it. `shown` is the hash of the heights of the surface
-        that the page shows. `check` raises an exception if the answer is no longer wanted.
+        The surface is left out if `shown`, the hash of the heights on the page, is its own.
         """
         curve = self._curves.get(tab)
         if curve is not None:
@@ -83,10 +77,9 @@ class LiveCurves:
             yield from curve.with_surface(shown, check)
 
     def _contact(self, case: Case, folder: Path) -> Contact:
-        """Make the contact of `case`; reuse the last surface, which most sliders do not change."""
         scans = [folder / part.file for part in case.roughness if part.kind == "measured"]
-        # A new modification time or size shows that the file of a scan was replaced.
-        stamps = [(each.stat().st_mtime_ns, each.stat().st_size) for each in scans]
+        # Most sliders do not change the surface. A new time or size shows that a scan was replaced.
+        stamps = [(scan.stat().st_mtime_ns, scan.stat().st_size) for scan in scans]
         key = repr((case.roughness, case.grid, stamps))
         if self._surface is not None and self._surface[0] == key:
             return case.contact_on(self._surface[1])
@@ -96,8 +89,6 @@ class LiveCurves:
 
 
 class _Curve:
-    """A curve that is being computed."""
-
     def __init__(self, case: Case, contact: Contact, warnings: list[str]) -> None:
         self.case, self.contact, self.warnings = case, contact, warnings
         self.points: list[Point] = []

@@ -1,4 +1,4 @@
-"""The temporary folder of one page; it holds the results, and the scans that the user added."""
+"""The temporary folder of one page, with its results and scans."""
 
 from __future__ import annotations
 
@@ -8,25 +8,19 @@ import shutil
 from pathlib import Path
 from tempfile import mkdtemp
 
+from restitution.app.content import Content, content_of, scans_of
 from restitution.case.case_file import read_text
 from restitution.errors import CaseError
-from restitution.live.content import Content, content_of, scans_of
 
 LARGEST_SCAN = 2**28  # largest size (bytes) of a scan that the user drops on the page
 _ODD = re.compile(r"[^\w.()+-]+")  # characters of a file name that are replaced
 
 
 class Session:
-    """The folders, the token and the first case of a page.
-
-    `close` removes the folders.
-    """
+    """The folders, the token and the first case of a page; `close` removes the folders."""
 
     def __init__(self, content: Content, folder: Path | None = None) -> None:
-        """Make the folders, and link the scans of `content` into the folder `scans`.
-
-        The paths of these scans are relative to `folder`.
-        """
+        """Make the folders, and link the scans of `content` (in `folder`) into `scans`."""
         self.token = secrets.token_urlsafe(24)
         self.room = Path(mkdtemp(prefix="restitution-app-"))
         self.scans = self.room / "scans"
@@ -41,7 +35,7 @@ class Session:
         stem, dot, kind = (name or "scan").partition(".")
         numbers = ("", *(f"-{k}" for k in range(2, 1000)))
         free = (f"{stem}{k}{dot}{kind}" for k in numbers)
-        return next(each for each in free if not (self.scans / each).exists())
+        return next(name for name in free if not (self.scans / name).exists())
 
     def close(self) -> None:
         """Remove the temporary folder with everything in it."""
@@ -53,7 +47,7 @@ def first_content(case: Path | None) -> Content:
     if case is None:
         from importlib.resources import files
 
-        text = (files("restitution.live") / "first.toml").read_text("utf-8")
+        text = (files("restitution.app") / "first.toml").read_text("utf-8")
     else:
         text = read_text(case)
     try:
@@ -63,7 +57,6 @@ def first_content(case: Path | None) -> Content:
 
 
 def _bring_scans(content: Content, folder: Path, scans: Path) -> None:
-    """Link the scans of `content` into `scans`; replace their paths in `content` by file names."""
     for table in scans_of(content):
         path = folder / table["file"]
         source = path.resolve()

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from live_page import GLASS_BEAD, RMS, change, computed, expect, names_in, rest, table, taken
+from app_page import GLASS_BEAD, RMS, change, computed, expect, names_in, rest, table, taken
 from restitution import api
 from restitution.errors import CaseError
 

@@ -5,7 +5,7 @@ from contextlib import contextmanager
 
 import pytest
 
-from live_app import App
+from app_process import App
 
 PROGRAMS = ("chromium", "chromium-browser", "google-chrome")
 OPTIONS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking"]
@@ -94,7 +94,7 @@ def _tab(browser, errors, **options):
 
 
 def _expect_none(errors):
-    assert [each for each in errors if HARMLESS not in each] == []
+    assert [error for error in errors if HARMLESS not in error] == []
 
 
 @pytest.fixture
@@ -123,7 +123,7 @@ def new_page(app, open_page):
 @pytest.fixture
 def page(new_page):
     """The page of the server with the curve of the case."""
-    from live_page import computed
+    from app_page import computed
 
     computed(new_page)
     return new_page

@@ -1,7 +1,4 @@
-"""Runs and convergence studies that the page of `restitution app` requests.
-
-They write the same files as `restitution run` and `restitution converge`, but no figures.
-"""
+"""Runs and convergence studies of the page, as of `run` and `converge`, but without figures."""
 
 from __future__ import annotations
 
@@ -11,10 +8,10 @@ from collections.abc import Callable
 from pathlib import Path
 from tempfile import mkdtemp
 
+from restitution.app.figures import as_json, curve_figures
 from restitution.case.case_file import parse_case
 from restitution.case.omissions import default_yield
 from restitution.errors import RestitutionError
-from restitution.live.figures import as_json, curve_figures
 from restitution.results.reader import read_run
 from restitution.results.writer import ResultsFolder
 from restitution.runs.convergence import run_convergence
@@ -25,21 +22,16 @@ Check = Callable[[str], None]  # called with the progress; raises if the run is 
 
 
 class Runs:
-    """The runs of the page, with one results folder for each case and number of grids.
-
-    The results folders lie in the folder `room`. Only the newest `_KEPT` of them are kept. A case
-    whose results are kept is not computed again.
-    """
+    """The newest `_KEPT` runs of the page; their results lie in the folder `room`."""
 
     def __init__(self, room: Path) -> None:
         self._room = room
         self._folders: dict[str, Path] = {}
 
     def folder(self, text: str, folder: Path, check: Check, grids: int = 1) -> Path:
-        """Return the results folder of the case `text`; run the case if it is not stored.
+        """The results of the case `text` or, if `grids` > 1, of its convergence study.
 
-        The scans of the case are in `folder`. If `grids` > 1, the results are those of a
-        convergence study on several grids.
+        The scans of the case are in `folder`.
         """
         key = hashlib.blake2b(f"{grids}\n{text}".encode()).hexdigest()
         if key not in self._folders:

@@ -37,7 +37,7 @@ async function post(name, values, signal) {
   return response;
 }
 
-async function stream(name, values, signal, each) {
+async function stream(name, values, signal, take) {
   const response = await post(name, values, signal);
   const reader = response.body.pipeThrough(new TextDecoderStream()).getReader();
   for (let rest = ""; ;) {
@@ -45,7 +45,7 @@ async function stream(name, values, signal, each) {
     if (done) return;
     const lines = (rest + value).split("\n");
     rest = lines.pop();
-    for (const line of lines) each(JSON.parse(line));
+    for (const line of lines) take(JSON.parse(line));
   }
 }
 
@@ -69,8 +69,8 @@ function get(key) {
   if (key === "depths") return TABLES.find((name) => content[name] !== undefined) || "";
   if (key === "second") return content.second === undefined ? "" : "own";
   const [name, inner] = key.split(".");
-  const found = inner === undefined ? content[name] : (table(name) || {})[inner];
-  return found === undefined ? "" : found;
+  const value = inner === undefined ? content[name] : (table(name) || {})[inner];
+  return value === undefined ? "" : value;
 }
 
 function set(key, value) {
@@ -153,7 +153,7 @@ function fromSlider(field, position) {
   if (field.whole) return field.key === "grid.nodes" ? Math.max(8, 8 * Math.round(value / 8)) : Math.round(value);
   if (field.unit === "") return Number(value.toPrecision(3));
   const units = SLIDER_UNITS[field.unit];
-  const unit = units.findLast((each) => value >= 0.9995 * form.units[field.unit][each]) || units[0];
+  const unit = units.findLast((name) => value >= 0.9995 * form.units[field.unit][name]) || units[0];
   return `${Number((value / form.units[field.unit][unit]).toPrecision(3))} ${unit}`;
 }
 
@@ -231,7 +231,7 @@ function drawChoice(field, id) {
   }
   select.addEventListener("change", () => {
     const before = fields().filter(shown);
-    for (const each of before) if (each.key !== field.key) lastValues.set(each.key, get(each.key));
+    for (const other of before) if (other.key !== field.key) lastValues.set(other.key, get(other.key));
     set(field.key, select.value);
     settle(before);
     drawForm();
@@ -340,15 +340,15 @@ async function ask() {
   asking = mine;
   say("computing…");
   let failed = false;
-  const asked = structuredClone(content);
+  const sent = structuredClone(content);
   try {
-    await stream("curve", { tab, content: asked }, mine.abort.signal, (line) => {
+    await stream("curve", { tab, content: sent }, mine.abort.signal, (line) => {
       if (asking !== mine) return;
       if (line.problems) { failed = true; mark(true); showProblems(line.problems); say("not computed: correct the marked value"); }
       else if (line.error) { failed = true; mark(true); showError(line.error); say(line.lost ? "stopped" : "not computed"); }
       else if (line.curve) {
         const received = performance.now();
-        takeCurve(line, asked);
+        takeCurve(line, sent);
         if (line.progress) { say(line.progress); return; }
         mine.drawn = true;
         last = performance.now() - mine.since;
@@ -362,18 +362,18 @@ async function ask() {
   if (asking !== mine) return;
   asking = null;
   updateText();
-  if (!failed && mine.drawn && !waiting) resting = setTimeout(drawBeside, SHORT_REST);
+  if (!failed && mine.drawn && !waiting) resting = setTimeout(drawSmooth, SHORT_REST);
 }
 
 // Report to the benchmark when a curve was requested, received and drawn, and how long the solve took (ms).
-function record(asked, seconds, received) {
-  const detail = { asked, solve: 1000 * seconds, received, drawn: performance.now() };
+function record(start, seconds, received) {
+  const detail = { asked: start, solve: 1000 * seconds, received, drawn: performance.now() };
   document.dispatchEvent(new CustomEvent("curve", { detail }));
 }
 
-function takeCurve(line, asked) {
+function takeCurve(line, sent) {
   showProblems(line.failure ? problemsOf(line.failure) : {});
-  curve = { rows: line.curve, figures: line.figures, errors: false, content: asked };
+  curve = { rows: line.curve, figures: line.figures, errors: false, content: sent };
   mark(false);
   showWarnings(line);
   drawCurves();
@@ -383,12 +383,12 @@ function takeCurve(line, asked) {
 
 const problemsOf = (failure) => ({ "": `Some depths are missing. ${failure}` });
 
-async function drawBeside() {
+async function drawSmooth() {
   askMaps();
   const mine = new AbortController();
   running = mine;
   try {
-    await stream("beside", { tab, shown: surfaceKey }, mine.signal, (line) => {
+    await stream("smooth", { tab, shown: surfaceKey }, mine.signal, (line) => {
       if (running !== mine || asking) return;
       if (line.figures) { curve.figures = line.figures; drawCurves(); }
       else if (line.surface) { surfaceKey = line.surface_key; drawSurface(line); }
@@ -402,16 +402,16 @@ async function drawBeside() {
 async function runWhole() {
   const mine = new AbortController();
   running = mine;
-  const asked = structuredClone(content);
+  const sent = structuredClone(content);
   say("computing the errors…");
   try {
-    await stream("run", { tab, content: asked, grids: 1 }, mine.signal, (line) => {
+    await stream("run", { tab, content: sent, grids: 1 }, mine.signal, (line) => {
       if (running !== mine || asking) return;
       if (line.progress) say(`computing the errors: ${line.progress}`);
       else if (line.problems) showProblems(line.problems);
       else if (line.error) { showError(line.error); say("the errors are unknown"); }
       else if (line.results) {
-        curve = { rows: line.results, figures: line.figures, errors: true, content: asked };
+        curve = { rows: line.results, figures: line.figures, errors: true, content: sent };
         if (line.failure) showProblems(problemsOf(line.failure));
         showWarnings(line);
         drawCurves();
@@ -557,7 +557,7 @@ function showWarnings({ information, warnings }) {
 
 function pin() {
   if (!curve.rows.length || !curve.content) return;
-  const number = pins.length ? Math.max(...pins.map((each) => each.number)) + 1 : 1;
+  const number = pins.length ? Math.max(...pins.map((pin) => pin.number)) + 1 : 1;
   const before = pins.length ? pins[pins.length - 1].content : null;
   pins.push({
     number, name: `pin ${number}`, rows: curve.rows, content: structuredClone(curve.content),
@@ -569,16 +569,16 @@ function pin() {
 }
 
 function flat(tables) {
-  const found = {};
+  const values = {};
   for (const [name, value] of Object.entries(tables)) {
     const parts = name === "roughness" && Array.isArray(value) ? value : [value];
     for (const [k, inner] of parts.entries()) {
       const path = k ? `${name} ${k + 1}` : name;
-      if (inner !== null && typeof inner === "object" && !Array.isArray(inner)) for (const [key, each] of Object.entries(inner)) found[`${path}.${key}`] = asText(each);
-      else found[path] = asText(inner);
+      if (inner !== null && typeof inner === "object" && !Array.isArray(inner)) for (const [key, cell] of Object.entries(inner)) values[`${path}.${key}`] = asText(cell);
+      else values[path] = asText(inner);
     }
   }
-  return found;
+  return values;
 }
 
 function differences(before, after) {
@@ -590,15 +590,15 @@ function differences(before, after) {
 function drawPins() {
   $("no-pins").hidden = pins.length > 0;
   if (!pins.length) { $("pins").replaceChildren(); return; }
-  fill("pins", ["curve", "changes from the previous pin", "COR, first to last", ""], pins.map((each) => {
+  fill("pins", ["curve", "changes from the previous pin", "COR, first to last", ""], pins.map((pin) => {
     const swatch = element("span", { class: "swatch" });
-    swatch.style.background = each.colour;
+    swatch.style.background = pin.colour;
     const back = element("button", { type: "button" }, "Restore its values");
-    back.addEventListener("click", () => { content = structuredClone(each.content); drawForm(); changed(); });
-    const remove = element("button", { type: "button", "aria-label": `Remove ${each.name}` }, "Remove");
-    remove.addEventListener("click", () => { pins = pins.filter((other) => other !== each); drawPins(); drawCurves(); });
-    const first = each.rows[0].restitution, end = each.rows[each.rows.length - 1].restitution;
-    return [element("span", {}, swatch, each.name), each.words, `${first.toFixed(4)} to ${end.toFixed(4)}`, element("span", {}, back, " ", remove)];
+    back.addEventListener("click", () => { content = structuredClone(pin.content); drawForm(); changed(); });
+    const remove = element("button", { type: "button", "aria-label": `Remove ${pin.name}` }, "Remove");
+    remove.addEventListener("click", () => { pins = pins.filter((other) => other !== pin); drawPins(); drawCurves(); });
+    const first = pin.rows[0].restitution, end = pin.rows[pin.rows.length - 1].restitution;
+    return [element("span", {}, swatch, pin.name), pin.words, `${first.toFixed(4)} to ${end.toFixed(4)}`, element("span", {}, back, " ", remove)];
   }));
 }
 
@@ -612,30 +612,30 @@ function drawUpload() {
 
 async function upload(file) {
   say(`reading ${file.name}…`);
-  let found;
+  let scan;
   try {
     const response = await fetch("api/upload", {
       method: "POST", body: file,
       headers: { "Content-Type": "application/octet-stream", "X-Token": token, "X-Tab": tab, "X-File-Name": encodeURIComponent(file.name) },
     });
     if (!response.ok) throw new Error(await response.text());
-    found = await response.json();
+    scan = await response.json();
   } catch (error) {
     showProblems({ "roughness.file": error.message, "": get("roughness.kind") === "measured" ? "" : error.message });
     say("the scan was not read");
     return;
   }
-  if (found.error) { showProblems({ "": `${file.name}: ${found.error}` }); say("the scan was not read"); return; }
+  if (scan.error) { showProblems({ "": `${file.name}: ${scan.error}` }); say("the scan was not read"); return; }
   const before = fields().filter(shown);
   const seeds = { ...(table("roughness") || {}) };
-  content.roughness = [{ kind: "measured", file: found.name }];
+  content.roughness = [{ kind: "measured", file: scan.name }];
   if (seeds.detrend) content.roughness[0].detrend = seeds.detrend;
   settle(before);
-  if (found.nodes && found.nodes[0] * found.nodes[1] <= 1.1e6) delete content.grid; // the pixels of the scan are the grid
-  else if (found.nodes) content.grid = { nodes: 512, spacing: `${Number((1e9 * Math.max(...found.spacing_m)).toPrecision(4))} nm` };
+  if (scan.nodes && scan.nodes[0] * scan.nodes[1] <= 1.1e6) delete content.grid; // the pixels of the scan are the grid
+  else if (scan.nodes) content.grid = { nodes: 512, spacing: `${Number((1e9 * Math.max(...scan.spacing_m)).toPrecision(4))} nm` };
   drawForm();
-  if (found.needs_size) showProblems({ "roughness.size": `${found.needs_size}; give its edge lengths, such as 10 um, 10 um` });
-  if (found.needs_height_unit) showProblems({ "roughness.height_unit": `${found.needs_height_unit}; choose the unit of the heights` });
+  if (scan.needs_size) showProblems({ "roughness.size": `${scan.needs_size}; give its edge lengths, such as 10 um, 10 um` });
+  if (scan.needs_height_unit) showProblems({ "roughness.height_unit": `${scan.needs_height_unit}; choose the unit of the heights` });
   changed();
 }
 
@@ -649,21 +649,21 @@ const editsText = () => textEdited || document.activeElement === $("case-text");
 async function updateText() {
   if (!$("case-file").open || editsText()) return;
   try {
-    const found = await (await post("text", { content })).json();
-    if (!editsText()) $("case-text").value = found.text;
+    const file = await (await post("text", { content })).json();
+    if (!editsText()) $("case-text").value = file.text;
   } catch (error) { $("text-problem").textContent = error.message; }
 }
 
 async function useText() {
-  let found;
+  let answer;
   try {
-    found = await (await post("content", { text: $("case-text").value })).json();
-  } catch (error) { found = { error: lostServer(error) }; }
-  $("text-problem").hidden = !found.error;
-  $("text-problem").textContent = found.error || "";
-  if (found.error) return;
+    answer = await (await post("content", { text: $("case-text").value })).json();
+  } catch (error) { answer = { error: lostServer(error) }; }
+  $("text-problem").hidden = !answer.error;
+  $("text-problem").textContent = answer.error || "";
+  if (answer.error) return;
   textEdited = false;
-  content = found.content;
+  content = answer.content;
   lastValues.clear();
   drawForm();
   changed();
@@ -679,15 +679,15 @@ async function runFiner() {
   $("finer").disabled = true;
   const tell = (words) => { $("finer-status").textContent = words; };
   tell("starting…");
-  const asked = { tab, content: structuredClone(content), grids: Number($("grids").value) };
+  const sent = { tab, content: structuredClone(content), grids: Number($("grids").value) };
   try {
-    await stream("run", asked, mine.signal, (line) => {
+    await stream("run", sent, mine.signal, (line) => {
       if (line.progress) tell(line.progress);
       else if (line.replaced) tell("cancelled");
       else if (line.error) tell(line.error);
       else if (line.problems) tell(Object.entries(line.problems).map(([key, words]) => `${key}: ${words}`).join("; "));
       else if (line.results) {
-        finerContent = asked;
+        finerContent = sent;
         finerFigures = line.figures;
         $("finer-cor").hidden = false;
         drawFiner();
@@ -753,9 +753,9 @@ function listen() {
 async function start() {
   if (!token) { say("open the complete address that the terminal shows, with the part after #"); return; }
   try {
-    const found = await (await post("start", {})).json();
-    form = found.form;
-    content = found.content;
+    const first = await (await post("start", {})).json();
+    form = first.form;
+    content = first.content;
   } catch (error) { say(lostServer(error)); return; }
   listen();
   drawForm();

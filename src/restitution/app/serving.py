@@ -8,9 +8,9 @@ from typing import Any
 
 import uvicorn
 
+from restitution.app.server import OwnHostOnly, Server
+from restitution.app.session import Session
 from restitution.errors import CaseError
-from restitution.live.server import OwnHostOnly, Server
-from restitution.live.session import Session
 
 
 class _Uvicorn(uvicorn.Server):
@@ -34,11 +34,7 @@ class _Uvicorn(uvicorn.Server):
 
 
 def serve_page(session: Session, port: int, ready: Callable[[str], Any]) -> None:
-    """Serve the page of `session` at `port` (0: any free port) of this machine until Ctrl-C.
-
-    `ready` is called with the address, which contains the token, as soon as the page can be opened.
-    Raises `CaseError` if the port is taken.
-    """
+    """Serve the page of `session` at `port` (0: any free port); call `ready` with its address."""
     listening = socket.socket()
     listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:

@@ -43,9 +43,9 @@ def as_json(content: Mapping[str, Any]) -> str:
 
 def _finite(value: Any) -> Any:
     if isinstance(value, Mapping):
-        return {key: _finite(each) for key, each in value.items()}
+        return {key: _finite(inner) for key, inner in value.items()}
     if isinstance(value, list | tuple):
-        return [_finite(each) for each in value]
+        return [_finite(inner) for inner in value]
     if isinstance(value, np.generic):
         value = value.item()
     return None if isinstance(value, float) and not math.isfinite(value) else value
@@ -61,9 +61,9 @@ def curve_figures(results: xr.Dataset) -> Raw:
     """Draw the figures of COR and of force as JSON; omit figures without data."""
     if not results.sizes["indentation_max"]:
         return Raw("{}")
-    found = {each.name: restitution_figure(results, each) for each in abscissae(results)}
-    found["force"] = load_displacement(results)
-    return Raw(as_json({name: drawing(figure) for name, figure in found.items()}))
+    figures = {axis.name: restitution_figure(results, axis) for axis in abscissae(results)}
+    figures["force"] = load_displacement(results)
+    return Raw(as_json({name: drawing(figure) for name, figure in figures.items()}))
 
 
 def drawing(figure: Figure) -> Raw:
@@ -125,7 +125,7 @@ class ContactMaps:
     def line(self, number: int) -> str:
         """Return the maps at one depth as a line of JSON. The axes span the maps of all depths."""
         indentation, pressed, yielded = self._maps[number]
-        largest = [np.nanmax(each.values, initial=0.0) for each in (pressed, yielded)]
+        largest = [np.nanmax(part.values, initial=0.0) for part in (pressed, yielded)]
         content: dict[str, Any] = {
             "indentation_m": indentation,
             "largest": {"pressure_MPa": largest[0], "plastic_nm": largest[1]},
@@ -138,8 +138,8 @@ class ContactMaps:
     def _drawn(self, part: Map) -> Raw:
         plot = interactive.draw(part, Figure(""))
         x, y = (
-            [min(nodes[0] for nodes in each), max(nodes[-1] for nodes in each)]
-            for each in zip(*((one.x, one.y) for _, one, _ in self._maps), strict=True)
+            [min(nodes[0] for nodes in axes), max(nodes[-1] for nodes in axes)]
+            for axes in zip(*((pressed.x, pressed.y) for _, pressed, _ in self._maps), strict=True)
         )
         plot.update_xaxes(range=x)
         plot.update_yaxes(range=y[::-1] if self._down else y)

@@ -7,7 +7,7 @@ import time
 from contextlib import contextmanager
 from pathlib import Path
 
-from live_page import RMS, change, computed, expect, rest, shown
+from app_page import RMS, change, computed, expect, rest, shown
 
 
 def test_two_tabs_compute_at_the_same_time(app, open_page):
@@ -50,7 +50,7 @@ def held(app):
     for number in workers:
         os.kill(number, signal.SIGSTOP)
     yield
-    time.sleep(2.5)  # more than the patience of live/process.py
+    time.sleep(2.5)  # more than the patience of app/process.py
     for number in workers:
         os.kill(number, signal.SIGCONT)
 
