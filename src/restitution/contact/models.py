@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -169,6 +169,10 @@ class Adhesion(ABC):
     work_of_adhesion: float
     equilibrium_separation: float
 
+    def with_work_of_adhesion(self, work_of_adhesion: float) -> Adhesion:
+        """Copy with another work of adhesion (J/m²)."""
+        return replace(self, work_of_adhesion=work_of_adhesion)  # type: ignore[type-var]
+
     def length(self, pair: Pair) -> float:
         """Length scale of adhesion (w²R*/E*²)^⅓ (m); 0 between flat bodies."""
         if pair.flat:
@@ -272,9 +276,7 @@ class Adhesion(ABC):
         return 0.0
 
 
-def set_field(
-    model: Plasticity | Adhesion, name: str, unit: str, *, finite: bool = True
-) -> None:
+def set_field(model: Plasticity | Adhesion, name: str, unit: str, *, finite: bool = True) -> None:
     """Make a field a positive Python float, which the compiled loops need, or raise `CaseError`."""
     value = float(getattr(model, name))
     if not value > 0 or (finite and value == math.inf):
