@@ -7,7 +7,7 @@ import pytest
 
 from restitution.contact.checks.findings import FewNodes, FinerThanScan
 
-FOUND = FewNodes(1e-7, 1e-6)
+FOUND = FewNodes(1e-7, 1e-6, 8)
 
 
 def test_a_finding_is_frozen():
@@ -16,9 +16,9 @@ def test_a_finding_is_frozen():
 
 
 def test_findings_compare_by_kind_and_values():
-    assert FOUND == FewNodes(1e-7, 1e-6) == pickle.loads(pickle.dumps(FOUND))
-    assert hash(FOUND) == hash(FewNodes(1e-7, 1e-6))
-    assert FewNodes(1e-7, 2e-6) != FOUND
+    assert FOUND == FewNodes(1e-7, 1e-6, 8) == pickle.loads(pickle.dumps(FOUND))
+    assert hash(FOUND) == hash(FewNodes(1e-7, 1e-6, 8))
+    assert FewNodes(1e-7, 2e-6, 8) != FOUND
     assert FinerThanScan(1e-7, 1e-6) != FOUND
 
 

@@ -156,7 +156,7 @@ def test_what_is_resolved_is_not_found():
 
 def test_unresolved_depths_are_counted_up_to_the_deepest():
     (found,) = unresolved_patches([1e-9, 5e-9, 20e-9, 40e-9], [1, NODES_PER_PATCH - 1, 3, 90])
-    assert found == PatchesUnresolved(few=3, depths=4, deepest=20e-9)
+    assert found == PatchesUnresolved(few=3, depths=4, deepest=20e-9, needed=NODES_PER_PATCH)
     # rough contacts can lose resolution with depth: the deepest unresolved depth is reported
     (found,) = unresolved_patches([7e-9, 3e-9], [1, 1])
     assert found.deepest == 7e-9

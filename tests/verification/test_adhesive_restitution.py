@@ -16,9 +16,8 @@ from restitution import (
     generate_surface,
     smooth,
     solve,
-    unloading_path,
 )
-from restitution.case.models import adhesion_of, plasticity_of
+from restitution.case.models import adhesion_of
 from restitution.contact.checks.resolution import adhesive_spacing, resolves_adhesion
 from restitution.contact.jkr.detachment import tension_limit
 from restitution.contact.jkr.limit import HertzianApproach, JKRLimit
@@ -141,36 +140,6 @@ def test_roughness_takes_the_effect_of_adhesion_away():
     for depth in (50e-9, 200e-9):
         assert abs(effect["rough", depth]) < 0.5 * effect["smooth", 5e-9]
     assert effect["smooth", 200e-9] < effect["smooth", 50e-9] < effect["smooth", 5e-9]
-
-
-@pytest.mark.parametrize("detachment", ["crack-closure", "pohrt-popov"])
-@pytest.mark.parametrize("approach", ["equilibrium", "hertzian", "pull-increments"])
-@pytest.mark.parametrize("plasticity", ["equilibrium", "truncated"])
-def test_no_adhesion_is_the_contact_without(approach, detachment, plasticity):
-    grid = Grid((60, 52), (0.25e-6, 0.3e-6))
-    surface = generate_surface(
-        grid, kind="gaussian", rms=0.03e-6, correlation_length=1.5e-6, seed=2
-    )
-    plain = solve(
-        Contact(PAIR, surface, plasticity=plasticity_of(plasticity, 1e9)),
-        60e-9,
-    )
-    named = solve(
-        Contact(
-            PAIR,
-            surface,
-            plasticity=plasticity_of(plasticity, 1e9),
-            adhesion=adhesion_of(work_of_adhesion=0.0, approach=approach, detachment=detachment),
-        ),
-        60e-9,
-    )
-    assert np.array_equal(named.pressure, plain.pressure)
-    assert named.force == plain.force
-    assert named.loading_work == plain.loading_work
-    assert collide(named) == collide(plain)
-    assert collide(plain).pull_off_force == 0
-    ends = [list(unloading_path(state, steps=4))[-1].force for state in (named, plain)]
-    assert ends == [0, 0]
 
 
 def test_vanishing_adhesion_is_none():

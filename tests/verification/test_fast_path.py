@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from contact_keys import contact_of
 from restitution import Body, Grid, Pair, solve, step
-from restitution.contact import loading
+from restitution.contact import equilibrium
 from restitution.contact.influence import half_space, inverse_half_space
 from restitution.contact.jkr import area as adhesion
 from restitution.numerics.convolution.operators import FreeConvolution
@@ -64,7 +64,7 @@ def test_adhesive(seed, monkeypatch):
 
     fast = pulled()
     nx, ny = contact.grid.nodes
-    for module in (adhesion, loading):
+    for module in (adhesion, equilibrium):
         monkeypatch.setattr(module, "candidate_box", lambda *_: (slice(0, nx), slice(0, ny)))
     monkeypatch.setattr(FreeConvolution, "single_precision", FreeConvolution.__call__)
     plain = pulled()

@@ -161,6 +161,10 @@ class Yielding:
             self.plasticity, self.yield_pressure, self.yield_strength, self.tangent_modulus
         )
 
+    def arguments(self) -> dict[str, Any]:
+        """The arguments of `Contact` that define its yield model."""
+        return {"plasticity": self.model, "yields": self.yields}
+
 
 class InterfaceTable(Table):
     """The table `[interface]`. By default, the softer body yields and the bodies do not adhere."""

@@ -313,14 +313,12 @@ class Case(Table):
     def contact_on(self, surface: Surface) -> Contact:
         """Make the unloaded contact on the given `surface`. Raises the same errors as `contact`."""
         self._require_memory(surface.grid)
-        yielding = self.yielding()
         return Contact(
             self.pair(),
             surface,
-            plasticity=yielding.model,
+            **self.yielding().arguments(),
             adhesion=self.adhesion_on(surface.grid),
             periodic=self.periodic,
-            yields=yielding.yields,
         )
 
     def adhesion_on(self, grid: Grid) -> AdhesionModel | None:

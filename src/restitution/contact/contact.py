@@ -39,7 +39,7 @@ _OLDER = {
     "yield_pressure": "plasticity=ConstantBound(yield_pressure)",
     "yield_strength": "plasticity=ExpandingCavity(yield_strength)",
     "tangent_modulus": "plasticity=ExpandingCavity(yield_strength, tangent_modulus)",
-    "work_of_adhesion": "adhesion=JKRLimit(work_of_adhesion) or adhesion=Cohesive(work_of_adhesion)",
+    "work_of_adhesion": "adhesion=JKRLimit(work_of_adhesion) or Cohesive(work_of_adhesion)",
     "approach": "adhesion=JKRLimit(work_of_adhesion, approach=…)",
     "detachment": "adhesion=JKRLimit(work_of_adhesion, detachment=…)",
     "equilibrium_separation": "adhesion=Cohesive(work_of_adhesion, equilibrium_separation)",

@@ -178,8 +178,8 @@ def require_converged(minimum: Minimum, solve: str, residual: float, reached: fl
     if not minimum.converged:
         raise NotConvergedError(
             f"{solve} stopped at a residual of {reached:.1e} (tolerance: {residual:.0e}) "
-            f"after {minimum.iterations} iterations; use another grid spacing or a smoother surface "
-            "(in Python, the argument residual sets the tolerance)"
+            f"after {minimum.iterations} iterations; use another grid spacing or a smoother "
+            "surface (in Python, the argument residual sets the tolerance)"
         )
 
 
@@ -254,8 +254,8 @@ def build_state(
 ) -> State:
     """Build the state of a `solution`, whose gap is overwritten.
 
-    Where the pressure is at the limit, a negative deformed gap becomes plastic displacement. Under a
-    bound that grows, `Plasticity.work` adds the plastic work later.
+    Where the pressure is at the limit, a negative deformed gap becomes plastic displacement. Under
+    a bound that grows, `Plasticity.work` adds the plastic work later.
     """
     pressure, gap = solution.pressure, solution.gap
     plastic, work = _plastic(contact, history)

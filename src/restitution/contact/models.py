@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -168,6 +168,10 @@ class Adhesion(ABC):
     follows_path: ClassVar[bool] = False
     work_of_adhesion: float
     equilibrium_separation: float
+
+    def with_work_of_adhesion(self, work_of_adhesion: float) -> Adhesion:
+        """Copy with another work of adhesion (J/m²)."""
+        return replace(self, work_of_adhesion=work_of_adhesion)  # type: ignore[type-var]
 
     def length(self, pair: Pair) -> float:
         """Length scale of adhesion (w²R*/E*²)^⅓ (m); 0 between flat bodies."""

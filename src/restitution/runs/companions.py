@@ -182,10 +182,13 @@ class Companions:
     @cached_property
     def adhesion_ends(self) -> tuple[Contact, Contact]:
         """The contact with the work of adhesion at the low and at the high end of its spread."""
-        known = self.case.library_adhesion()
-        if known is None:
+        known, adhesion = self.case.library_adhesion(), self.coarse.adhesion
+        if known is None or adhesion is None:
             return self.coarse, self.coarse
-        low, high = (replace(self.coarse, work_of_adhesion=w) for w in (known.low, known.high))
+        low, high = (
+            replace(self.coarse, adhesion=adhesion.with_work_of_adhesion(w))
+            for w in (known.low, known.high)
+        )
         return low, high
 
     def with_modulus_of(self, case: Case) -> Contact:

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 
 from restitution.contact.checks.edge import EdgeReachedError, edge_reached
+from restitution.contact.checks.findings import CLEANING as CLEANING
 from restitution.contact.checks.findings import Finding, ImpossibleSlope, SteepSurface
 from restitution.contact.checks.inputs import doubtful, impossible
 from restitution.contact.checks.resolution import predicted_radius
@@ -73,7 +74,7 @@ def failure_at_edge(contact: Contact, indentation: float, prescribed: str) -> st
 
 
 def no_range(contact: Contact) -> list[str]:
-    """Return a warning if `contact` neglects the range of the attraction because of a coarse grid."""
+    """Warn if `contact` neglects the range of the attraction because of a coarse grid."""
     adhesion, pair = contact.adhesion, contact.pair
     if not isinstance(adhesion, JKRLimit):
         return []

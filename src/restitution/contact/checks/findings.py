@@ -12,13 +12,6 @@ from restitution.display import counted, quantity
 from restitution.errors import CaseError, RestitutionError, SurfaceError
 from restitution.surfaces.refine import FACTORS
 
-# Recommended smallest number of nodes per contact radius. With eight nodes per contact radius at
-# first yield, COR, force and work of smooth spheres are within 0.3 % of the reference values
-# (docs/method.md).
-NODES_PER_RADIUS = 8
-# If half of the contact area of rough bodies is in patches of at least 20 nodes, COR deviates from
-# its value on the finest grid by 2 % (rms) and by at most 5 % (docs/resolution.md).
-NODES_PER_PATCH = 20
 CLEANING = "roughness.outliers"  # key that removes spikes
 # How to avoid a contact that is too large, for each table that prescribes the depths.
 _STOPS = {
@@ -99,15 +92,15 @@ class PixelAboveContact(Finding):
 class RangeUnresolved(Finding):
     spacing: float
     needed: float
+    times: int  # power of two that divides the cells enough
     periodic: bool
 
     def text(self, prescribed: str = "indentation") -> str:
-        times = divisions(self.spacing, self.needed)
         return (
             f"grid.spacing: cells of {_nm(self.spacing)} are too coarse for the range of the "
             f'attraction; interface.adhesion = "cohesive" needs {_nm(self.needed)} or less (0.3 '
             "times the smaller of E* z0^2/w and sqrt(R* z0), with the work of adhesion w and the "
-            f"equilibrium separation z0): multiply grid.refine by {times}"
+            f"equilibrium separation z0): multiply grid.refine by {self.times}"
             + ("" if self.periodic else ', or set interface.adhesion = "jkr"')
         )
 
@@ -216,12 +209,13 @@ class ContactBeyondGrid(Finding):
 class FewNodes(Finding):
     spacing: float  # the larger one of grid spacing and pixel
     radius: float
+    needed: int  # nodes per radius
 
     def text(self, prescribed: str = "indentation") -> str:
         return (
             f"the contact radius of the smooth bodies, {_um(self.radius)} at the deepest "
             f"indentation, has only {self.radius / self.spacing:.2g} nodes at the spacing "
-            f"{_um(self.spacing)} ({NODES_PER_RADIUS} are needed): use a finer grid or scan"
+            f"{_um(self.spacing)} ({self.needed} are needed): use a finer grid or scan"
         )
 
 
@@ -371,12 +365,13 @@ class PatchesUnresolved(Finding):
     few: int  # depths with too few nodes
     depths: int
     deepest: float
+    needed: int  # nodes per patch
 
     def text(self, prescribed: str = "indentation") -> str:
         return (
             f"{self.few} of {self.depths} depths (up to {_nm(self.deepest)}) are not resolved "
             "(resolved is false): half of their contact is in patches of fewer than "
-            f"{NODES_PER_PATCH} nodes, and their results depend on the grid; refine the grid "
+            f"{self.needed} nodes, and their results depend on the grid; refine the grid "
             "(grid.refine)"
         )
 
@@ -404,11 +399,6 @@ class AdhesionUnresolved(Finding):
             "large for the adhesion of the asperities in contact, which needs "
             f"{_nm(self.needed)} or less{remedy}"
         )
-
-
-def divisions(spacing: float, needed: float) -> int:
-    """The smallest power of two that divides cells of `spacing` into cells of `needed` or less."""
-    return int(2 ** max(math.ceil(math.log2(spacing / needed) - 1e-9), 0))
 
 
 def _um(length: float) -> str:

@@ -1,9 +1,8 @@
 """Errors of COR and of the pull-off force due to the models of plasticity and adhesion.
 
 The error of plasticity comes from a comparison with finite elements of half-spaces
-(docs/validation.md), as a function of e_p = sqrt(E_el/(E_el + W_p)), the COR due to plasticity alone.
-A sphere that yields returns less energy than a half-space, the less the larger its contact radius
-over its radius.
+(docs/validation.md), as a function of the COR due to plasticity alone, sqrt(E_el/(E_el + W_p)). A
+sphere that yields returns less energy than a half-space.
 """
 
 from __future__ import annotations

@@ -14,8 +14,6 @@ from numpy.typing import NDArray
 
 from restitution.contact.bodies import Pair
 from restitution.contact.checks.findings import (
-    NODES_PER_PATCH,
-    NODES_PER_RADIUS,
     AdhesionUnresolved,
     ContactBeyondGrid,
     FewNodes,
@@ -24,7 +22,6 @@ from restitution.contact.checks.findings import (
     NoHalfSpace,
     PatchesUnresolved,
     PixelAboveContact,
-    divisions,
 )
 from restitution.contact.contact import Contact
 from restitution.contact.interface import interface_of
@@ -32,6 +29,13 @@ from restitution.contact.state import State
 from restitution.numerics.box import widen
 from restitution.theory import JKR, FirstYield, Hertz
 
+# Recommended smallest number of nodes per contact radius. With eight nodes per contact radius at
+# first yield, COR, force and work of smooth spheres are within 0.3 % of the reference values
+# (docs/method.md).
+NODES_PER_RADIUS = 8
+# If half of the contact area of rough bodies is in patches of at least 20 nodes, COR deviates from
+# its value on the finest grid by 2 % (rms) and by at most 5 % (docs/resolution.md).
+NODES_PER_PATCH = 20
 # A grid spacing counts as finer than the pixel of a scan if it is smaller by more than this
 # fraction.
 _NEARLY_EQUAL = 0.01
@@ -114,7 +118,7 @@ def resolution_findings(contact: Contact, indentation: float) -> list[Finding]:
     scan = grid_of_a_scan(contact)
     checks = (
         (radius >= half_width, ContactBeyondGrid(radius, indentation, half_width, scan)),
-        (radius < NODES_PER_RADIUS * coarsest, FewNodes(coarsest, radius)),
+        (radius < NODES_PER_RADIUS * coarsest, FewNodes(coarsest, radius, NODES_PER_RADIUS)),
         (radius > _HALF_SPACE * pair.radius, NoHalfSpace(radius, pair.radius, _HALF_SPACE)),
         (finest < (1 - _NEARLY_EQUAL) * pixel, FinerThanScan(finest, pixel)),
     )
@@ -139,7 +143,9 @@ def unresolved_patches(
 ) -> list[PatchesUnresolved]:
     """Return a finding if patches have too few nodes at some `depths` (m)."""
     few = [depth for depth, n in zip(depths, median_patches, strict=True) if not resolves(n)]
-    return [PatchesUnresolved(len(few), len(depths), max(few))] if few else []
+    if not few:
+        return []
+    return [PatchesUnresolved(len(few), len(depths), max(few), NODES_PER_PATCH)]
 
 
 def unresolved_adhesion(
@@ -165,6 +171,11 @@ def unresolved_adhesion(
             refine=divisions(unrefined, finest),
         )
     ]
+
+
+def divisions(spacing: float, needed: float) -> int:
+    """The smallest power of two that divides cells of `spacing` into cells of `needed` or less."""
+    return int(2 ** max(math.ceil(math.log2(spacing / needed) - 1e-9), 0))
 
 
 def grid_of_a_scan(contact: Contact) -> bool:

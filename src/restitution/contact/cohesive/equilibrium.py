@@ -142,9 +142,9 @@ def solve_cohesive(
 ) -> CohesiveState:
     """Find an equilibrium on `box`, by descending from the pressure `p` to lower energies.
 
-    `u` is the displacement due to `p`; None to compute it. The caller updates the works and the
-    losses of the result. Raises `NotConvergedError`, and `DomainError` if the pressure in a periodic
-    contact without yield exceeds E*.
+    `u` is the displacement due to `p`; None to compute it. The caller updates works and losses.
+    Raises `NotConvergedError`, and `DomainError` if the pressure of elastic periodic bodies exceeds
+    E*.
     """
     K = _operator(contact, box)
     before = np.zeros(contact.grid.nodes) if history is None else history.plastic_displacement

@@ -14,7 +14,7 @@ import numpy as np
 from restitution.arguments import typed
 from restitution.contact.bodies import Pair
 from restitution.contact.checks.findings import Finding, RangeUnresolved
-from restitution.contact.checks.resolution import radius_of_asperities
+from restitution.contact.checks.resolution import divisions, radius_of_asperities
 from restitution.contact.cohesive.equilibrium import CohesiveState, box_gap
 from restitution.contact.cohesive.path import (
     load_cohesive,
@@ -53,6 +53,7 @@ _PULL_OFF = 0.01
 # The attraction of Lennard-Jones weakens most steeply at the gap z₀/_SOFTEST.
 _SOFTEST = (2 / 15) ** (1 / 6)
 _FAR = 100.0  # gap, in units of z₀, beyond which a law without closed forms does not attract
+_SHARES = (*(0.5**k for k in range(1, 11)), *(-(2.0**k) for k in range(20)))
 _SAMPLES = 2000  # gaps at which the slope of such a law is sampled
 
 
@@ -91,10 +92,11 @@ class CohesiveLaw(Adhesion):
     def gap_at(self, pressure: Array) -> Array:
         """Gap (m) at which the pressure (Pa, not negative) of the law has this value."""
         high = np.full(np.shape(pressure), self.equilibrium_separation)
-        reach = np.full_like(high, self.equilibrium_separation)
-        while (short := -self.traction(high - reach) < pressure).any():
-            reach = np.where(short, 2 * reach, reach)
-        low = high - reach
+        low = high
+        for share in _SHARES:  # of z₀: positive first, because a law can be singular at gap 0
+            if not (short := -self.traction(low) < pressure).any():
+                break
+            low = np.where(short, share * self.equilibrium_separation, low)
         for _ in range(60):
             middle = 0.5 * (low + high)
             stronger = -self.traction(middle) > pressure
@@ -199,8 +201,8 @@ class CohesiveLaw(Adhesion):
     def grid_finding(self, contact: Contact) -> Finding | None:
         if self.resolves_range(contact):
             return None
-        needed = self.coarsest_spacing(contact.pair)
-        return RangeUnresolved(max(contact.grid.spacing), needed, contact.periodic)
+        spacing, needed = max(contact.grid.spacing), self.coarsest_spacing(contact.pair)
+        return RangeUnresolved(spacing, needed, divisions(spacing, needed), contact.periodic)
 
     def grid_loss(self, contact: Contact) -> float:
         """Relative error of the adhesive loss on the grid of `contact`."""

@@ -2,8 +2,7 @@
 
 In a step without instability the work of the force equals the change of the potential energy plus
 the plastic work. Where the solve descends to another equilibrium, the excess of the work is the
-energy dissipated by adhesion. Its uncertainty is half the jump of the force times the step, so steps
-across jumps are shortened.
+energy dissipated by adhesion. Its uncertainty is half the jump of the force times the step.
 """
 
 from __future__ import annotations
@@ -91,7 +90,7 @@ def load_cohesive(
 def move(
     state: CohesiveState, indentation: float, residual: float, accuracy: float = ACCURACY
 ) -> CohesiveState:
-    """Follow the path to `indentation`; the `convolutions` of the last state are those of the path."""
+    """Follow the path to `indentation`; the last state has the `convolutions` of the path."""
     end, convolutions = state, 0
     for end in follow(state, indentation, residual=residual, accuracy=accuracy):
         convolutions += end.convolutions
@@ -189,8 +188,8 @@ def _continued(state: CohesiveState, path: Sequence[CohesiveState]) -> Iterator[
 class _Step:
     """A trial step: the state at its end, the work of the force by two rules, and energies (J).
 
-    `change` is that of the potential energy plus the plastic work. `uncertainty` is the error of the
-    work if the force has jumped in the step.
+    `change` is that of the potential energy plus the plastic work. `uncertainty` is the error
+    if the force has jumped in the step.
     """
 
     state: CohesiveState

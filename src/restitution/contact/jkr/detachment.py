@@ -1,8 +1,8 @@
 """Detachment criteria: which nodes of an adhesive contact in the JKR limit are released.
 
 In the continuum, the contact edge recedes where the energy release rate G reaches the work of
-adhesion w. On a grid the edge is a staircase of nodes. G is computed for each face between a node in
-contact and a node outside, as ½ |p| times the opening
+adhesion w. On a grid, G is ½ |p| times the opening for each face between a node in contact and a
+node outside:
 
     opening = (u₊ − 2u₀ + u₋) + (h₀ − 2h₋ + h₋₋)
 
@@ -329,8 +329,8 @@ def _patch_numbers(touching: Mask, nodes: Nodes) -> NDArray[np.intp]:
 def _apart(nodes: Nodes, pressure: Array, recession: Array) -> NDArray[np.intp]:
     """Positions in `nodes` of edge nodes to release singly, under the largest tension first.
 
-    Where the edge must recede by a fraction r of a cell, one of every 1/r nodes is released, because
-    a release unloads the neighbours. Ties are broken by index, so that rounding does not decide.
+    Where the edge must recede by a fraction r of a cell, one of every 1/r nodes is released: a
+    release unloads the neighbours. Ties are broken by index, so that rounding does not decide.
     """
     i, j = nodes
     rank = np.round(pressure / (_TIE * max(-float(pressure.min(initial=0.0)), _TINY)))

@@ -1,8 +1,7 @@
 """Work of adhesive loading, from the balances of a few contact areas or from the force.
 
 The force of a loaded state scatters, because its contact edge moves by whole nodes. The force at
-balances (see `area`) does not, so few depths suffice. If balances are not reliable, the force of the
-states is integrated.
+balances (see `area`) does not, so few depths suffice.
 """
 
 from __future__ import annotations

@@ -140,7 +140,7 @@ class SharedUnloading:
 
     @classmethod
     def of(cls, state: State, known: Sequence[State]) -> SharedUnloading | None:
-        """Prepare the `known` states for reuse in the unloading from `state`; None if impossible."""
+        """Prepare the `known` states for reuse in unloading from `state`; None if impossible."""
         if (
             not known
             or known[0].contact is not state.contact

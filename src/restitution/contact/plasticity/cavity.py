@@ -4,11 +4,11 @@ Johnson (1970, J. Mech. Phys. Solids 18, 115–126; 1985, §6.3); docs/method.md
 
     bound = Y · min(c₀ + c₁ ln(m/(c₀ Y)), c₂),   m = p_e(2δ)/√2 · [2(δ − h_c)/(2δ − h_c)]^s.
 
-p_e(2δ) is the pressure at the node between *elastic* bodies at twice the indentation, h_c the gap at
-the crest of the asperity, and s = max(1 − (p_H/m₀)^1.5, 0) is 1 for separate asperities and 0 where
-they have merged (p_H: Hertz pressure of the smooth bodies under the same force). On a ridge, c₀, c₁
-and c₂ are larger by 0.11 q, 1.1 q and 0.25 q with q = (1 − κ₂/κ₁)² s. With hardening, a flow stress
-replaces the factor Y; its strain is the increase of 0.2 a/R since first yield (Tabor 1951).
+p_e(2δ) is the pressure at the node between *elastic* bodies at twice the indentation, h_c the gap
+at the crest of the asperity, and s = max(1 − (p_H/m₀)^1.5, 0) is 1 for separate asperities and 0
+where they have merged (p_H: Hertz pressure of the smooth bodies under the same force). On a ridge,
+c₀, c₁ and c₂ are larger by 0.11 q, 1.1 q and 0.25 q with q = (1 − κ₂/κ₁)² s. With hardening, a flow
+stress replaces the factor Y; its strain is the increase of 0.2 a/R since first yield (Tabor 1951).
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ _RATIO, _SHALLOW = 1.42, 0.2
 # Values of the steepness ψ = E* S/Y of the asperities (rms slope S), and the largest relative
 # difference of COR from finite elements (docs/validation.md) at each of these values.
 _STEEPNESS, _GROWING = (0.0, 4.0, 6.0), (0.03, 0.035, 0.045)
-# Values of the COR due to plasticity alone, and a factor of the largest difference for each of them.
+# Values of the COR due to plasticity alone, and a factor of the difference for each of them.
 _NEAR_ONE = (0.94, 0.98, 1.0), (1.0, 0.5, 0.2)
 
 
