@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import Self
 
 from restitution.collision import Collision
-from restitution.contact.checks.findings import NODES_PER_PATCH
 from restitution.contact.checks.model_error import model_error, pull_off_error
 from restitution.contact.checks.resolution import (
+    NODES_PER_PATCH,
     adhesive_spacing,
     median_patch,
     resolves_adhesion,

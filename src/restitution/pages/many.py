@@ -7,7 +7,7 @@ import math
 from pathlib import Path
 
 from restitution.case.case_file import parse_toml
-from restitution.contact.checks.findings import NODES_PER_PATCH
+from restitution.contact.checks.resolution import NODES_PER_PATCH
 from restitution.laws.law import Law
 from restitution.laws.law_files import read_laws
 from restitution.pages.methods import methods

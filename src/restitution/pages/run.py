@@ -12,7 +12,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from restitution.case.omissions import default_yield
-from restitution.contact.checks.findings import NODES_PER_PATCH
+from restitution.contact.checks.resolution import NODES_PER_PATCH
 from restitution.curve.oblique import ObliquePoint
 from restitution.display import quantity
 from restitution.pages.methods import methods

@@ -14,7 +14,7 @@ from restitution.compare.references import (
     restitution_references_by_indentation,
     restitution_references_by_velocity,
 )
-from restitution.contact.checks.findings import NODES_PER_PATCH
+from restitution.contact.checks.resolution import NODES_PER_PATCH
 from restitution.display import quantity
 from restitution.plots.cor import IMPACT_VELOCITY, INDENTATION, Abscissa, bars, cor_chart
 from restitution.plots.figure import (

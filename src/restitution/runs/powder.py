@@ -13,8 +13,7 @@ from restitution.case.case_file import parse_case
 from restitution.case.derived import deepest_indentation
 from restitution.case.roughness import GeneratedRoughness
 from restitution.contact.checks.edge import MARGIN, largest_reach
-from restitution.contact.checks.findings import divisions
-from restitution.contact.checks.resolution import adhesive_spacing
+from restitution.contact.checks.resolution import adhesive_spacing, divisions
 from restitution.contact.contact import Contact
 from restitution.contact.loading import solve
 from restitution.errors import CaseError, DomainError

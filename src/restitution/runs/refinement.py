@@ -8,9 +8,10 @@ from bisect import bisect_left
 from pathlib import Path
 
 from restitution.case.case import Case
-from restitution.contact.checks.findings import NODES_PER_PATCH, divisions
 from restitution.contact.checks.resolution import (
+    NODES_PER_PATCH,
     adhesive_spacing,
+    divisions,
     median_patch,
     resolves_adhesion,
 )
