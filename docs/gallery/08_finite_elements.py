@@ -19,7 +19,7 @@ def table():
     """The rows of models.csv, in the current folder or a folder above it."""
     here = Path.cwd().resolve()
     root = next(folder for folder in (here, *here.parents) if (folder / "evidence").is_dir())
-    with open(root / "validation" / "models.csv") as file:
+    with open(root / "evidence" / "plasticity_models" / "models.csv") as file:
         return list(csv.DictReader(file))
 
 
