@@ -91,7 +91,6 @@ def _list(shown: dict[str, Material], *, names: bool = True) -> Table:
 
 
 def _values(material: Material) -> Table:
-
     table = table_of_numbers(
         Column("quantity", no_wrap=True, overflow="fold"),
         Column("value", justify="right", no_wrap=True, overflow="fold"),
