@@ -20,8 +20,8 @@ import docstring_parser
 import pytest
 
 import restitution as rs
+from restitution.contact.jkr.approach import Approach
 from restitution.contact.jkr.detachment import Detachment
-from restitution.contact.jkr.limit import Approach
 from restitution.contact.models import Adhesion, Plasticity
 
 PACKAGE = Path(rs.__file__).parent

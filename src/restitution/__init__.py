@@ -10,13 +10,13 @@ if TYPE_CHECKING:
     from restitution.contact.bodies import Body, Pair
     from restitution.contact.cohesive.law import Cohesive, CohesiveLaw
     from restitution.contact.contact import Contact, smooth
-    from restitution.contact.jkr.detachment import CrackClosure, PohrtPopov
-    from restitution.contact.jkr.limit import (
+    from restitution.contact.jkr.approach import (
         AdhesiveApproach,
         HertzianApproach,
-        JKRLimit,
         PullIncrements,
     )
+    from restitution.contact.jkr.detachment import CrackClosure, PohrtPopov
+    from restitution.contact.jkr.limit import JKRLimit
     from restitution.contact.loading import solve, step
     from restitution.contact.models import Plasticity
     from restitution.contact.path import loading_path, unloading_path
@@ -113,7 +113,8 @@ _MODULES = {
     "contact.cohesive.law": ("Cohesive", "CohesiveLaw"),
     "contact.contact": ("Contact", "smooth"),
     "contact.jkr.detachment": ("CrackClosure", "PohrtPopov"),
-    "contact.jkr.limit": ("AdhesiveApproach", "HertzianApproach", "JKRLimit", "PullIncrements"),
+    "contact.jkr.approach": ("AdhesiveApproach", "HertzianApproach", "PullIncrements"),
+    "contact.jkr.limit": ("JKRLimit",),
     "contact.models": ("Plasticity",),
     "contact.plasticity.bound": ("ConstantBound", "Elastic"),
     "contact.plasticity.cavity": ("ExpandingCavity",),
