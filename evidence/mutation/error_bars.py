@@ -19,15 +19,18 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parents[2]
 TESTS = {
-    "contact/adhesive_work.py": "contact/test_work_error.py contact/test_balance.py "
+    "contact/jkr/loading_work.py": "contact/test_work_error.py contact/test_balance.py "
     "contact/test_loading.py",
-    "contact/loading.py": "contact/test_work_error.py contact/test_loading.py "
-    "contact/test_cavity.py contact/test_separation.py verification/test_adhesive_restitution.py",
-    "contact/plastic_work.py": "contact/test_work_error.py contact/test_cavity.py",
-    "contact/separation.py": "contact/test_separation.py contact/test_cohesive.py "
+    "contact/jkr/limit.py": "contact/test_work_error.py contact/test_loading.py "
+    "contact/test_model_error.py contact/test_separation.py verification/test_adhesive_restitution.py",
+    "contact/plasticity/cavity.py": "contact/test_work_error.py contact/test_cavity.py "
+    "contact/test_model_error.py",
+    "contact/plasticity/truncated.py": "contact/test_work_error.py contact/test_loading.py",
+    "contact/plasticity/bound.py": "contact/test_model_error.py",
+    "contact/jkr/separation.py": "contact/test_separation.py contact/test_cohesive.py "
     "contact/test_energy_account.py test_collision.py verification/test_adhesive_restitution.py",
-    "contact/cohesive_path.py": "contact/test_cohesive.py contact/test_periodic_cohesive.py",
-    "contact/model_error.py": "contact/test_model_error.py",
+    "contact/cohesive/law.py": "contact/test_cohesive.py",
+    "contact/cohesive/path.py": "contact/test_cohesive.py contact/test_periodic_cohesive.py",
     "collision.py": "test_collision.py contact/test_energy_account.py contact/test_separation.py "
     "verification/test_adhesive_restitution.py",
     "numerics/quadrature.py": "numerics/test_quadrature.py",

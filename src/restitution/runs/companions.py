@@ -126,10 +126,8 @@ class Companions:
         holds one factor for each of the depths.
         """
         coarse = self.coarse
-        keys = ("yield_pressure", "yield_strength")
         lowered = [
-            replace(coarse, **{key: factor * getattr(coarse, key) for key in keys})
-            for factor in factors
+            replace(coarse, plasticity=coarse.plasticity.scaled(factor)) for factor in factors
         ]
         if all(contact == coarse for contact in lowered):
             return self.own

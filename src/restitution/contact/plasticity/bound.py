@@ -55,6 +55,7 @@ class ConstantBound(Plasticity):
 
     label = "equilibrium"
     bytes_per_node = 140.0
+    strengths = ("yield_pressure",)
 
     def __post_init__(self) -> None:
         set_field(self, "yield_pressure", "Pa", finite=False)

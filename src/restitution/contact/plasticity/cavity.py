@@ -92,6 +92,7 @@ class ExpandingCavity(Plasticity):
     label = "expanding-cavity"
     grows = True
     for_periodic = False
+    strengths = ("yield_strength",)
 
     def __post_init__(self) -> None:
         set_field(self, "yield_strength", "Pa")

@@ -52,6 +52,7 @@ class Truncated(Plasticity):
     label = "truncated"
     bounds_solve = False
     for_periodic = False
+    strengths = ("yield_pressure",)
 
     def __post_init__(self) -> None:
         set_field(self, "yield_pressure", "Pa")
