@@ -207,15 +207,13 @@ def test_every_key_of_a_case_is_documented():
 
 
 def test_every_column_is_documented():
-    from restitution.results.schema import (
-        COLUMNS,
-        OBLIQUE_COLUMNS,
-        OBLIQUE_SPREAD_COLUMNS,
-        SPREAD_COLUMNS,
-    )
+    from restitution.curve.oblique import MeanObliquePoint
+    from restitution.curve.periodic import PeriodicPoint
+    from restitution.curve.point import MeanPoint
 
     text = (ROOT / "docs" / "results.md").read_text()
-    for column in (*COLUMNS, *SPREAD_COLUMNS, *OBLIQUE_COLUMNS, *OBLIQUE_SPREAD_COLUMNS):
+    kinds = MeanPoint, MeanObliquePoint, PeriodicPoint
+    for column in (header for kind in kinds for header in kind.columns()):
         assert f"`{column}`" in text
 
 

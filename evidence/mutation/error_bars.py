@@ -22,7 +22,8 @@ TESTS = {
     "contact/jkr/loading_work.py": "contact/test_work_error.py contact/test_balance.py "
     "contact/test_loading.py",
     "contact/jkr/limit.py": "contact/test_work_error.py contact/test_loading.py "
-    "contact/test_model_error.py contact/test_separation.py verification/test_adhesive_restitution.py",
+    "contact/test_model_error.py contact/test_separation.py "
+    "verification/test_adhesive_restitution.py",
     "contact/plasticity/cavity.py": "contact/test_work_error.py contact/test_cavity.py "
     "contact/test_model_error.py",
     "contact/plasticity/truncated.py": "contact/test_work_error.py contact/test_loading.py",
@@ -39,13 +40,13 @@ TESTS = {
     "runs/ensemble.py": "runs/test_ensemble.py",
     "runs/oblique.py": "runs/test_oblique_impacts.py",
     "results/compare.py": "cli/test_compare.py",
-    "results/total_error.py": "results/test_total_error.py runs/test_error_budget.py",
+    "curve/point.py": "curve/test_total_error.py runs/test_error_budget.py",
     "fit/uncertainty.py": "fit/test_uncertainty.py fit/test_fit.py",
     "mixtures/scaling.py": "mixtures/test_mixture.py",
-    "laws/law.py": "laws/test_interpolation.py laws/test_law.py",
+    "laws/law.py": "curve/test_interpolation.py laws/test_law.py",
     "impacts/oblique.py": "impacts/test_oblique.py",
     "impacts/tangential_error.py": "impacts/test_tangential_error.py impacts/test_oblique.py",
-    "laws/interpolation.py": "laws/test_interpolation.py",
+    "curve/interpolation.py": "curve/test_interpolation.py",
     "laws/compact_fit.py": "laws/test_compact_fit.py",
 }
 
