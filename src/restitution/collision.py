@@ -1,9 +1,6 @@
 """Restitution and impact velocity of a collision, from its works of loading and unloading.
 
-The impact is quasi-static and normal, without waves, friction or rate effects. The contact ends at
-separation. Without adhesion, the bodies separate when the force returns to zero. Unloading is then
-elastic and reversible, so it returns the stored energy. With adhesion, the bodies separate when the
-last grid node detaches. Unloading is then simulated step by step, or its work is estimated.
+The impact is quasi-static and normal, without waves, friction or rate effects.
 """
 
 from __future__ import annotations
@@ -114,16 +111,10 @@ def collide(
 ) -> Collision:
     """Compute the collision whose deepest point is `state`.
 
-    Without adhesion, the work of unloading W_u is the stored energy, and `method` has no effect.
-    With adhesion, `method="path"` simulates unloading, and `method="energy-estimate"` estimates the
-    work of unloading as W_u = E_el − wA. Here E_el is the elastic energy, w the work of adhesion
-    and A the contact area. For cohesive contacts, which model an attraction of finite range, the
-    computed energy of this attraction replaces −wA.
-
-    With the estimate, the pull-off force and the indentation at separation are NaN. The estimate
-    neglects the energy dissipated at detachment, so the error of W_u is set to wA. In all
-    comparisons with simulated unloading, wA was larger than the dissipated energy plus the error of
-    this energy due to the grid.
+    Without adhesion, the work of unloading is the stored energy. With adhesion, `method="path"`
+    simulates unloading, and `method="energy-estimate"` estimates its work as the elastic energy
+    minus the energy of the attraction. The estimate neglects the energy dissipated at detachment,
+    so its error is set to wA, the work of adhesion times the contact area.
 
     Args:
         state: Deepest state of the collision, reached by loading.

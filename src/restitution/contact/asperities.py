@@ -45,11 +45,7 @@ def elongation_of(gap: Array, spacing: tuple[float, float]) -> Array:
 
 
 def crest_gap_of(gap: Array) -> Array:
-    """Gap at the crest of the asperity that each node belongs to.
-
-    To find the crest, a path begins at the node. Each step of the path leads to the one of the
-    eight neighbours with the smallest gap. The path ends at the crest, where no neighbour has a
-    smaller gap.
+    """Gap at the crest that a path of steepest descent over the eight neighbours comes to.
 
     Args:
         gap: Gap before loading (m), shape (nx, ny).
@@ -74,7 +70,6 @@ def crest_gap_of(gap: Array) -> Array:
 
 
 def _elongation(gap: Array, spacing: tuple[float, float]) -> Array:
-    """Compute the elongation at the nodes of `gap`. `elongation_of` calls it for strips of rows."""
     inner = slice(1, -1)
     hx, hy = spacing
     elongation = np.zeros(gap.shape)
@@ -89,10 +84,6 @@ def _elongation(gap: Array, spacing: tuple[float, float]) -> Array:
 
 
 def _take_smaller_neighbours(lowest: Array, values: Array, axis: int) -> None:
-    """Lower each node of `lowest` to the smaller of its two neighbours in `values` along `axis`.
-
-    A node that is already lower than both neighbours stays unchanged.
-    """
     ahead, behind = ((_ALL,) * axis + (part,) for part in (_FROM, _TO))
     np.minimum(lowest[behind], values[ahead], out=lowest[behind])
     np.minimum(lowest[ahead], values[behind], out=lowest[ahead])

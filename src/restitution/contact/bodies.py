@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from restitution.arguments import typed
 from restitution.display import quantity, summary_html, summary_text
 from restitution.errors import CaseError
-from restitution.theory import yield_coefficient
 
 
 @typed
@@ -95,25 +94,6 @@ class Pair:
             (1 - body.poissons_ratio**2) / body.youngs_modulus for body in (self.first, self.second)
         )
 
-    def first_yield_pressure(self, yield_pressure: float, yield_strength: float) -> float:
-        """Largest pressure (Pa) at which the smooth bodies stay elastic.
-
-        Args:
-            yield_pressure: Constant limit of the contact pressure (Pa); inf if not used.
-            yield_strength: Yield strength of the softer body (Pa); inf if not used.
-
-        Returns:
-            The yield pressure (Pa) or, with a yield strength, this strength times the
-            `theory.yield_coefficient` at the mean Poisson's ratio of the bodies.
-
-        Source:
-            R. L. Jackson, I. Green, J. Tribology 127 (2005) 343–354.
-        """
-        if math.isinf(yield_strength):
-            return yield_pressure
-        nu = 0.5 * (self.first.poissons_ratio + self.second.poissons_ratio)
-        return float(yield_coefficient(nu)) * yield_strength
-
     @property
     def tangential_modulus(self) -> float:
         """Tangential modulus G* (Pa) with 1/G* = (2 − ν₁)/(4 G₁) + (2 − ν₂)/(4 G₂).
@@ -129,10 +109,9 @@ class Pair:
     def shear_compliances(self) -> tuple[float, float]:
         """Compliances α and β of the surfaces under a tangential point force Q (SI, 1/Pa).
 
-        The force moves the two surfaces relative to each other. At the distance r from the force,
-        this displacement is β Q/r on the line of action of the force, and α Q/r on the line
-        perpendicular to it. With the shear modulus G of each body, α = Σ (1 − ν)/(2πG) and
-        β = Σ 1/(2πG), summed over both bodies. The mean of α and β is 1/(πG*).
+        At the distance r, the surfaces move relative to each other by β Q/r on the line of action
+        of the force and by α Q/r on the line perpendicular to it: α = Σ (1 − ν)/(2πG) and
+        β = Σ 1/(2πG) with the shear moduli G of the bodies.
         """
         # Poisson's ratio and 1/(2πG) of each body, where G is its shear modulus.
         parts = [
@@ -154,7 +133,6 @@ class Pair:
         return 1 / (1 / self.first.mass + 1 / self.second.mass)
 
     def _reduced(self) -> str:
-        """Text with the reduced radius, modulus and mass, for `repr`."""
         mass = "" if self.mass is None else f", m* {quantity(self.mass, 'kg')}"
         E = quantity(self.contact_modulus, "Pa")
         if self.flat:

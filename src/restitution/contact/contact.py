@@ -47,7 +47,6 @@ _OLDER = {
 
 
 def _naming_new_form(contact: type[Contact]) -> type[Contact]:
-    """Make `Contact` name the new form of an argument of older versions."""
     known: Callable[..., None] = contact.__init__
 
     @functools.wraps(known)

@@ -9,14 +9,9 @@ displacement) and p_y the pressure bound. The pressure p minimises
 The gradient g = K p + h − δ is the deformed gap. The gap is open (g ≥ 0) where p = 0 and closed
 (g = 0) between the bounds. Where p = p_y the surface yields by u_p = −g.
 
-Without adhesion the lower bound is zero. The contact then lies inside the set {h < δ}, because
-K p > 0 under every positive pressure. So solving on the bounding box of this set is exact. With
-adhesion the lower bound at the nodes held in contact is negative (a tension). The box then also
-contains these nodes and a margin of two cells.
-
-In a periodic contact, the mean of K p is zero, so K p < 0 somewhere. Nodes with h ≥ δ can therefore
-come into contact, and the box is the whole grid. The mean of the gradient, mean(h) − δ, is the mean
-of the deformed gap. At δ = mean(h) this mean is zero, so an elastic contact has no open gap left.
+Without adhesion the lower bound is zero, and the contact lies inside the set {h < δ}, because
+K p > 0 under every positive pressure. So solving on the bounding box of this set is exact. In a
+periodic contact, the mean of K p is zero, and the box is the whole grid.
 """
 
 from __future__ import annotations
@@ -174,7 +169,6 @@ def _solve_at(indentation: float) -> str:
 
 
 def require_converged(minimum: Minimum, solve: str, residual: float, reached: float) -> None:
-    """Raise `NotConvergedError` if `solve`, which returned `minimum`, did not converge."""
     if not minimum.converged:
         raise NotConvergedError(
             f"{solve} stopped at a residual of {reached:.1e} (tolerance: {residual:.0e}) "
@@ -307,7 +301,6 @@ def candidate_box(contact: Contact, indentation: float, history: State | None = 
 
 
 def separated_state(contact: Contact, indentation: float, history: State | None = None) -> State:
-    """Build the state of bodies out of contact."""
     nothing = np.zeros((0, 0))
     plastic, work = _plastic(contact, history)
     return State(
@@ -327,7 +320,6 @@ def separated_state(contact: Contact, indentation: float, history: State | None 
 
 
 def _plastic(contact: Contact, history: State | None) -> tuple[Array, float]:
-    """Plastic displacement (m) and plastic work (J) of `history`, or zeros."""
     if history is None:
         return np.zeros(contact.grid.nodes), 0.0
     return history.plastic_displacement, history.plastic_work

@@ -1,12 +1,8 @@
-"""Elastic half-space: displacement due to uniform pressure or shear traction on a rectangle.
+"""Elastic half-space of both bodies: displacement due to uniform pressure or shear on a rectangle.
 
-Pressure and displacement are positive into the body. Both bodies are combined into one half-space
-of contact modulus E*: 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂. In shear, traction and displacement are
-along x. The compliances in shear are sums over both bodies (`Pair.shear_compliances`).
-
-On a periodic half-space, a pressure wave with the angular wave number q causes a displacement wave.
-The amplitude of the displacement is 2/(E* |q|) times that of the pressure (Johnson 1985, *Contact
-Mechanics*, §13.2).
+Pressure and displacement are positive into the body. In shear, traction and displacement are along
+x. On a periodic half-space, the displacement due to a pressure wave with the angular wave number q
+is 2/(E* |q|) times the pressure (Johnson 1985, *Contact Mechanics*, §13.2).
 """
 
 from __future__ import annotations
@@ -43,7 +39,6 @@ _MAX_OPERATOR, _MAX_COEFFICIENTS = 1 / 15, 2 / 3
 
 
 def _cached(build: Callable[Arguments, Operator]) -> Callable[Arguments, Operator]:
-    """Cache the operators that `build` makes. Each call returns one with its own workspace."""
 
     @functools.wraps(build)
     def cached(*args: Arguments.args, **kwargs: Arguments.kwargs) -> Operator:
@@ -80,11 +75,9 @@ def love_displacement(x: Array, y: Array, hx: float, hy: float, contact_modulus:
 def far_displacement(x: Array, y: Array, hx: float, hy: float, contact_modulus: float) -> Array:
     """Displacement (m/Pa) as in `love_displacement`, by a series that holds far from the cell.
 
-    The Taylor series of the displacement due to a point load is averaged over the cell. With the
-    displacement u, the pressure p and the distance r from the cell,
+    The Taylor series of the displacement due to a point load, averaged over the cell, is
     u πE*/(p hx hy) = [1 + (hx²∂x² + hy²∂y²)/24 + hx⁴∂x⁴/1920 + hx²hy²∂x²∂y²/576 + hy⁴∂y⁴/1920] 1/r.
-    The derivatives ∂x and ∂y act on 1/r. The relative error is of the order of the sixth power of
-    the ratio of cell size to distance. `x` (m) is a column and `y` (m) a row.
+    `x` (m) is a column and `y` (m) a row.
     """
     xx, yy = hx * hx, hy * hy
     # Coefficients of polynomials in c, the squared direction cosine along x. They follow from
@@ -104,21 +97,11 @@ def far_displacement(x: Array, y: Array, hx: float, hy: float, contact_modulus: 
 def cerruti_displacement(
     x: Array, y: Array, hx: float, hy: float, compliances: tuple[float, float]
 ) -> Array:
-    """Displacement (m/Pa) along x at (x, y) per unit traction along x on a cell hx × hy.
+    """Displacement (m/Pa) along x at (x, y) per unit traction along x on a cell at the origin.
 
-    The cell is at the origin.
-
-    A tangential force Q along x moves the surface of a half-space along x. At the distance r from
-    the force, the displacement is u = Q [(1 − ν)/r + ν x²/r³]/(2πG) with the shear modulus G
-    (Cerruti 1882; Johnson 1985, *Contact Mechanics*, eq. 3.75). Both terms are integrated over the
-    cell with the identities y²/r³ = ∂²r/∂x², x²/r³ = ∂²r/∂y² and 1/r = x²/r³ + y²/r³. The result is
-
-        u = α [[x asinh(y/|x|)]] + β [[y asinh(x/|y|)]],   α = Σ (1 − ν)/(2πG),   β = Σ 1/(2πG).
-
-    α and β are the `compliances`, with sums over the bodies. Double brackets mean that the
-    expression is evaluated at the four corners of the cell and summed with alternating signs.
-    Cancellation makes the relative error grow as the square of the distance in cells. The error is
-    below 1e-9 up to 1000 cells.
+    Source: Cerruti (1882); Johnson (1985), *Contact Mechanics*, eq. 3.75, integrated over the cell:
+    α [[x asinh(y/|x|)]] + β [[y asinh(x/|y|)]] with the `compliances` α and β. Double brackets are
+    sums over the corners with alternating signs. The relative error is below 1e-9 up to 1000 cells.
     `x` and `y` (m) broadcast together, and must not lie on the lines through the edges of the cell.
     """
     alpha, beta = compliances
@@ -137,10 +120,7 @@ def influence_coefficients(
     contact_modulus: float,
     device: Device = CPU,
 ) -> Array:
-    """Displacement per unit pressure (m/Pa), at i and j cells from the loaded cell.
-
-    `i` is a column and `j` a row; both start at 0.
-    """
+    """Displacement per unit pressure (m/Pa), `i` (a column) and `j` (a row) cells away."""
     # Coefficients of cells of equal shape are proportional to the cell width and to 1/E*. So they
     # are computed for E* = 1 and cells of unit width, and then scaled.
     hx, hy = spacing
@@ -156,10 +136,7 @@ def influence_coefficients(
 def half_space(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
 ) -> FreeConvolution:
-    """Make the operator from pressure to displacement on a free (non-periodic) half-space.
-
-    The operator takes and returns arrays of the given `shape` (nodes) on the current device.
-    """
+    """Operator from pressure to displacement on a free half-space, on the current device."""
     device = current()
 
     def kernel(i: NDArray[np.int64], j: NDArray[np.int64]) -> Array:
@@ -174,11 +151,7 @@ def half_space(
 def inverse_half_space(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
 ) -> SpectralFilter:
-    """Make the operator from displacement to pressure, an approximate inverse of `half_space`.
-
-    It multiplies a displacement wave of the angular wave number |q| by |q| E*/2. This inverse is
-    exact for a periodic half-space (Johnson 1985).
-    """
+    """Approximate inverse of `half_space`, exact for a periodic half-space."""
 
     def symbol(qx: Array, qy: Array) -> Array:
         q = _wave_numbers(qx, qy, spacing)
@@ -196,11 +169,7 @@ def inverse_half_space(
 def shear_half_space(
     shape: tuple[int, int], spacing: tuple[float, float], compliances: tuple[float, float]
 ) -> FreeConvolution:
-    """Make the operator from traction to displacement, both along x, on a free half-space.
-
-    The operator takes and returns arrays of the given `shape` (nodes). `compliances` (1/Pa) are
-    those of `Pair.shear_compliances`.
-    """
+    """Operator from traction to displacement, both along x; `compliances` are those of `Pair`."""
     hx, hy = spacing
 
     def kernel(i: NDArray[np.int64], j: NDArray[np.int64]) -> Array:
@@ -214,11 +183,7 @@ def shear_half_space(
 def periodic_half_space(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
 ) -> PeriodicConvolution:
-    """Make the operator from pressure to displacement on one period of a half-space.
-
-    Displacement is measured from its mean, so its mean is zero, and a uniform pressure causes no
-    displacement.
-    """
+    """Operator from pressure to displacement on one period; the mean displacement is zero."""
     return _with_mean(0.0, shape, spacing, contact_modulus)
 
 
@@ -226,12 +191,7 @@ def periodic_half_space(
 def sprung_half_space(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
 ) -> PeriodicConvolution:
-    """Make the operator of a periodic half-space on an elastic foundation.
-
-    The displacement is that of `periodic_half_space` plus `foundation_compliance` times the mean
-    pressure. In contrast to `periodic_half_space`, this operator is positive definite.
-    `inverse_half_space` is its exact inverse if the FFT of this shape needs no padding.
-    """
+    """Operator of a periodic half-space on an elastic foundation, which is positive definite."""
     compliance = foundation_compliance(shape, spacing, contact_modulus)
     return _with_mean(compliance, shape, spacing, contact_modulus)
 
@@ -239,11 +199,7 @@ def sprung_half_space(
 def foundation_compliance(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
 ) -> float:
-    """Displacement of the elastic foundation of `sprung_half_space` per mean pressure (m/Pa).
-
-    The compliance is chosen equal to that of a half-space for a pressure wave twice as long as the
-    longer edge of the period.
-    """
+    """Compliance (m/Pa) of the foundation: that of a wave twice as long as the longer edge."""
     q = math.pi / max(n * h for n, h in zip(shape, spacing, strict=True))
     return 2 / (contact_modulus * q)
 
@@ -251,9 +207,7 @@ def foundation_compliance(
 def _unit_coefficients(lags: tuple[int, int], aspect: float, device: Device) -> Array:
     """Influence coefficients for cells 1 × `aspect` and E* = 1; callers must not modify them.
 
-    `lags` are the numbers of coefficients along x and y. They depend on the size of the contact, so
-    they differ between most solves. The cache keeps the largest block of coefficients so far, and
-    smaller blocks are views of it.
+    The cache keeps the largest block of coefficients so far, and smaller blocks are views of it.
     """
     key = _compute_coefficients, aspect, device
     known: Array | None = operator_cache.get(key)
@@ -269,7 +223,6 @@ def _unit_coefficients(lags: tuple[int, int], aspect: float, device: Device) -> 
 
 
 def _most_coefficients() -> int:
-    """The largest number of coefficients that are cached."""
     return int(_MAX_COEFFICIENTS * operator_cache.max_bytes) // np.dtype(np.float64).itemsize
 
 
@@ -294,10 +247,6 @@ def _with_mean(
     spacing: tuple[float, float],
     contact_modulus: float,
 ) -> PeriodicConvolution:
-    """Build a periodic half-space with a mean displacement of `compliance` times mean pressure.
-
-    The unit of `compliance` is m/Pa.
-    """
 
     def symbol(qx: Array, qy: Array) -> Array:
         q = _wave_numbers(qx, qy, spacing)
@@ -310,5 +259,4 @@ def _with_mean(
 
 
 def _wave_numbers(qx: Array, qy: Array, spacing: tuple[float, float]) -> Array:
-    """Magnitude of the wave vector (rad/m) for wave numbers `qx` and `qy` in rad per cell."""
     return np.sqrt((qx / spacing[0]) ** 2 + (qy / spacing[1]) ** 2)

@@ -57,7 +57,6 @@ class Plasticity(ABC):
     strengths: ClassVar[tuple[str, ...]] = ()
 
     def scaled(self, factor: float) -> Plasticity:
-        """Copy with all strengths multiplied by `factor`."""
         changed = {name: factor * getattr(self, name) for name in self.strengths}
         return replace(self, **changed)  # type: ignore[type-var]
 

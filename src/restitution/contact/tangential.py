@@ -1,23 +1,12 @@
 """Tangential contact at a fixed normal pressure: stick, slip and friction loss at every node.
 
-The bodies move relative to each other by the tangential displacement U along x. The traction q
-along x moves their surfaces relative to each other by C q, where C is the elastic operator of
-`influence.shear_half_space`. The slip of a node is s = U − C q. Coulomb's law limits |q| to µ p,
-with the coefficient of friction µ and the pressure p. Where |q| is below this limit, the slip does
-not change. From one state to the next, the traction minimises
+The bodies move relative to each other by U along x, and the traction q along x moves their surfaces
+by C q. The slip of a node is s = U − C q. From one state to the next, the traction minimises
 
     ½ qᵀC q − qᵀ(U − s₀)   subject to   −µ p ≤ q ≤ µ p,
 
-where s₀ is the slip before the step. The gradient is s₀ − s: it is zero in stick and has the sign
-of −q in slip. Nodes without pressure carry no traction and slip freely. A node that comes into
-contact sticks where it touches. Because s₀ = U₀ − C q₀, the history consists only of the traction
-q₀ and the displacement U₀ before the step. The normal pressure may increase or decrease from step
-to step.
-
-Like Cattaneo (1938) and Mindlin (1949), this module neglects the traction along y and the influence
-of tangential traction on the pressure. (Between bodies of the same material, tangential traction
-has no influence on the pressure.) Yield limits only the pressure; the tangential traction does not
-contribute to yield.
+where s₀ is the slip before the step. Like Cattaneo (1938) and Mindlin (1949), this neglects the
+traction along y and the influence of traction on pressure and yield.
 """
 
 from __future__ import annotations
@@ -116,10 +105,8 @@ def shear(
     """Move the bodies of a contact along x, to a prescribed tangential displacement.
 
     The energy lost to friction is the slip in this step times the mean of the tractions before and
-    after the step, summed over the nodes. The work of the step is the change of the displacement
-    times the mean of the tangential forces before and after the step. With these rules, the work is
-    exactly the change of the stored energy plus the loss. If a path changes direction or pressure,
-    stored energy and loss approach the values of the continuous path as the steps become shorter.
+    after the step. With the mean tangential force, the work is exactly the change of the stored
+    energy plus the loss.
 
     Args:
         normal: Normal state after the step, without adhesion.
@@ -168,7 +155,7 @@ def shear(
     limit, target = _limit(normal, friction, box), motion + moved
     scale = float(np.abs(target).max())
     upper = device.put(limit)
-    found = minimise_quadratic(
+    solved = minimise_quadratic(
         BoundedQuadratic(K, device.put(target), -upper, upper, K.single_precision),
         start=device.put(before.copy()),  # the solver overwrites its start
         precondition=inverse_half_space(
@@ -177,14 +164,14 @@ def shear(
         tolerance=residual * scale,
         max_iterations=MAX_ITERATIONS,
     )
-    reached = found.residual / scale if scale > 0 else 0.0
+    reached = solved.residual / scale if scale > 0 else 0.0
     require_converged(
-        found,
+        solved,
         f"the tangential solve at a displacement of {1e9 * displacement:.6g} nm",
         residual,
         reached,
     )
-    traction, gradient = device.get(found.point), device.get(found.gradient)
+    traction, gradient = device.get(solved.point), device.get(solved.gradient)
     twice = float(np.einsum("ij,ij->", before + traction, gradient))
     return TangentialState(
         normal=normal,
@@ -200,5 +187,4 @@ def shear(
 
 
 def _limit(normal: State, friction: float, box: Box) -> Array:
-    """Coulomb's limit of the traction (Pa) on `box`: coefficient of friction times pressure."""
     return friction * normal.pressure_on(box)

@@ -49,7 +49,6 @@ def require_inside_grid(state: State) -> None:
 
 
 def edge_reached(contact: Contact, indentation: float) -> EdgeReached:
-    """Make the finding of a contact that reaches the edge at `indentation` (m)."""
     provenance, size = contact.surface.provenance, contact.grid.size
     touch, levelling, scan = first_touch(contact), None, None
     if provenance.get("source") == "measured":
@@ -68,7 +67,6 @@ def edge_reached(contact: Contact, indentation: float) -> EdgeReached:
 
 
 def edge_predicted(contact: Contact, indentation: float, gap: float) -> EdgePredicted:
-    """Make the finding of a contact that is expected to close the smallest `gap` (m) of the rim."""
     return EdgePredicted(**vars(edge_reached(contact, indentation)), gap=gap)
 
 

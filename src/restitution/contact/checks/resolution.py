@@ -66,12 +66,10 @@ def resolves_adhesion(state: State) -> bool:
 
 
 def resolves_contact(state: State) -> bool:
-    """Whether the grid resolves the contact: the patches, and adhesion at their asperities."""
     return resolves(median_patch(state.patch_sizes())) and resolves_adhesion(state)
 
 
 def tabor_parameter(state: State) -> float:
-    """Tabor parameter µ of the contact, for spheres of radius `radius_of_asperities`."""
     contact, adhesion = state.contact, interface_of(state.contact)
     radius, E_star = radius_of_asperities(state), contact.pair.contact_modulus
     asperity = JKR(radius, E_star, adhesion.work_of_adhesion)
@@ -134,7 +132,6 @@ def median_patch(patches: NDArray[np.int64]) -> int:
 
 
 def resolves(median_patch_nodes: float) -> bool:
-    """Whether a contact with this result of `median_patch` has enough nodes per patch."""
     return median_patch_nodes >= NODES_PER_PATCH
 
 

@@ -90,7 +90,6 @@ def _is_curved(form: Form, reduced_radius: float) -> bool:
 
 
 def _form(surface: Surface, before: str) -> Form:
-    """Tilt and curvature of the whole scan; of the surface if its provenance lacks them."""
     if (tilt := surface.provenance.get(f"{before}tilt_share")) is None:
         return form_of(surface)
     curvature = surface.provenance.get(f"{before}curvature_share", 0.0)
@@ -99,7 +98,6 @@ def _form(surface: Surface, before: str) -> Form:
 
 
 def _spikes(surface: Surface, before: str) -> defects.Spikes:
-    """Spikes of the whole scan; of the surface if its provenance lacks them."""
     if (count := surface.provenance.get(f"{before}spikes")) is None:
         return spikes_of(surface)
     names = ("spike_height_m", "spike_threshold")

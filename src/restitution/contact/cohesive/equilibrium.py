@@ -78,7 +78,6 @@ class CohesiveState(State):
 
     @property
     def potential_energy(self) -> float:
-        """Sum of elastic energy and interaction energy (J)."""
         return self.stored_energy + self.interaction_energy
 
 
@@ -124,7 +123,6 @@ class BoundedLaw:
 
 
 def box_gap(state: State) -> Array:
-    """Gap between the deformed surfaces on the box (m)."""
     base = _base(state.contact, state.indentation, state.box, state.plastic_displacement)
     return base + state.box_displacement
 
@@ -249,7 +247,6 @@ def interacting_box(contact: Contact, indentation: float, history: State | None 
 
 
 def on_box(state: CohesiveState, box: Box, *, residual: float) -> CohesiveState:
-    """Solve `state` again on a larger box."""
     contact, indentation = state.contact, state.indentation
     inside = reframe(np.ones(shape_of(state.box), dtype=bool), state.box, box)
     p = np.where(
@@ -294,7 +291,6 @@ def _operator(contact: Contact, box: Box) -> Convolution:
 
 
 def _base(contact: Contact, indentation: float, box: Box, plastic: Array | None) -> Array:
-    """Gap (m) between the surfaces on `box` before elastic displacement."""
     base: Array = contact.gap[box] + (law_of(contact).equilibrium_separation - indentation)
     if plastic is not None:
         base += plastic[box]
@@ -302,7 +298,6 @@ def _base(contact: Contact, indentation: float, box: Box, plastic: Array | None)
 
 
 def _far(contact: Contact, indentation: float, box: Box) -> tuple[float, float]:
-    """Force (N) and energy (J) of the nodes outside `box` and of the bodies outside the grid."""
     if contact.periodic:
         return 0.0, 0.0
     law, grid, (rows, columns) = law_of(contact), contact.grid, box

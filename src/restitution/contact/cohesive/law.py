@@ -205,7 +205,6 @@ class CohesiveLaw(Adhesion):
         return RangeUnresolved(spacing, needed, divisions(spacing, needed), contact.periodic)
 
     def grid_loss(self, contact: Contact) -> float:
-        """Relative error of the adhesive loss on the grid of `contact`."""
         fineness = max(contact.grid.spacing) / (COARSEST * self.zone_length(contact.pair))
         return _GRID_LOSS * fineness**2
 
@@ -287,7 +286,6 @@ class Cohesive(CohesiveLaw):
 
 
 def _cubic_root(c: Array) -> Array:
-    """The root y ≥ 1 of y³ − y = c for c ≥ 0, by Viète's formulas."""
     t = 1.5 * math.sqrt(3) * c
     inside = np.cos(np.arccos(np.minimum(t, 1.0)) / 3)
     beyond = np.cosh(np.arccosh(np.maximum(t, 1.0)) / 3)

@@ -158,7 +158,6 @@ def _shared(state: CohesiveState, known: Sequence[State]) -> list[CohesiveState]
 
 
 def _is_same(state: CohesiveState, other: CohesiveState) -> bool:
-    """Whether two states at one indentation are the same equilibrium."""
     box = union(state.box, other.box)
     assert box is not None
     here, there = (reframe(one.box_displacement, one.box, box) for one in (state, other))
@@ -261,7 +260,6 @@ def follow(
 
 
 def _accounted(state: CohesiveState, step: _Step, smooth: bool) -> CohesiveState:
-    """The state after an accepted `step`, with its losses and errors added to those of `state`."""
     lost = 0.0 if smooth else max(step.by_trapezium - step.change, 0.0)
     error = 0.0 if smooth else min(step.uncertainty, max(lost, abs(step.change)))
     unaccounted = state.unaccounted + (step.by_parabola - step.change if smooth else 0.0)
@@ -277,7 +275,6 @@ def _accounted(state: CohesiveState, step: _Step, smooth: bool) -> CohesiveState
 
 
 def _try(previous: CohesiveState | None, state: CohesiveState, at: float, residual: float) -> _Step:
-    """Make a trial step to the indentation `at`, extrapolated from `previous` and `state`."""
     contact, box = state.contact, state.box
     limit, convolutions = contact.plasticity.bound_after(state, at, residual)
     p, u = state.box_pressure, state.box_displacement
@@ -307,7 +304,6 @@ def _try(previous: CohesiveState | None, state: CohesiveState, at: float, residu
 
 
 def _parabola(previous: CohesiveState, state: CohesiveState, new: CohesiveState) -> float:
-    """Work (J) of the force from `state` to `new`, by the parabola through all three forces."""
     a = state.indentation - previous.indentation
     b = new.indentation - state.indentation
     second = ((new.force - state.force) / b - (state.force - previous.force) / a) / (a + b)
@@ -321,7 +317,6 @@ def _scale(state: CohesiveState, *, loading: bool) -> float:
 
 
 def _on_wider_box(state: CohesiveState, at: float, residual: float) -> CohesiveState:
-    """Solve `state` on a larger box if nodes outside its box interact at the indentation `at`."""
     needed = interacting_box(state.contact, at, state)
     if union(state.box, needed) == state.box:
         return state
@@ -333,7 +328,6 @@ def _on_wider_box(state: CohesiveState, at: float, residual: float) -> CohesiveS
 
 
 def separation_of(path: list[State]) -> Separation:
-    """Compute the result of an unloading `path`, which ends with a reversible separation."""
     start, end = cast(CohesiveState, path[0]), cast(CohesiveState, path[-1])
     lost = end.adhesive_loss - start.adhesive_loss
     plastic = end.plastic_work - start.plastic_work

@@ -232,7 +232,6 @@ class Edge:
 
     @classmethod
     def of(cls, p: Array, u: Array, h: Array, touching: Mask) -> Edge:
-        """Find the edge from pressure p, elastic displacement u, and gap h at u = 0."""
         # `np.pad` would take 25 times as long on small contacts.
         T = np.zeros((touching.shape[0] + 2, touching.shape[1] + 2), dtype=bool)
         T[1:-1, 1:-1] = touching
@@ -271,7 +270,6 @@ class Edge:
         return self.touching & (self._depth <= width[self._nearest])
 
     def patch_mean(self, values: Array) -> Array:
-        """For each edge node, the mean of `values` over all edge nodes of its patch."""
         patch = _patch_numbers(self.touching, self.nodes)
         means = np.bincount(patch, weights=values) / np.maximum(np.bincount(patch), 1)
         return np.asarray(means[patch])
@@ -298,7 +296,6 @@ class Edge:
 
     @cached_property
     def _nearest(self) -> NDArray[np.intp]:
-        """Position in `nodes` of the edge node nearest to each node of the box."""
         from scipy.ndimage import distance_transform_edt
 
         off_edge = np.ones(self.touching.shape, dtype=bool)

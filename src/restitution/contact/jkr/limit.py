@@ -101,7 +101,6 @@ class JKRLimit(Adhesion):
         return 1.86 * math.sqrt(self.work_of_adhesion * h / contact.pair.contact_modulus)
 
     def relative_opening(self, contact: Contact, indentation: float) -> float:
-        """`crack_opening` relative to the length by which residuals are divided."""
         return self.crack_opening(contact) / self.residual_length(contact.pair, indentation)
 
     def load(
@@ -151,7 +150,6 @@ class JKRLimit(Adhesion):
         return unload_adhesive(state, indentation, residual=residual)
 
     def first_depth(self, contact: Contact, work: float, shallow: float) -> float:
-        """Depth (m) of smooth JKR bodies, where each state is in equilibrium."""
         if not (self.approach.in_equilibrium and self.detachment.by_energy):
             return shallow
         from scipy.optimize import brentq

@@ -103,13 +103,11 @@ def work_by_force(
 
 
 def pinning_error(state: State) -> float:
-    """Error of the loading work (J) that arises because the grid pins the contact edge."""
     model = jkr_of(state.contact)
     return model.approach.pinning * model.work_of_adhesion * state.contact_area
 
 
 def _integral(points: list[Point], first: float, last: float) -> float:
-    """Integral (J) of a cubic spline through `points`, extrapolated linearly to the limits (m)."""
     from scipy.interpolate import CubicSpline
 
     x, F = np.array(points).T

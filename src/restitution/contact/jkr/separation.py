@@ -72,7 +72,6 @@ def separate(
 def _unload(
     state: State, tolerance: float, finer: int, known: Sequence[State] = ()
 ) -> Iterator[State]:
-    """Yield the states of unloading; `finer` multiplies the smallest number of steps."""
     contact, model = state.contact, jkr_of(state.contact)
     other = SharedUnloading.of(state, known)
     yield state
@@ -130,7 +129,6 @@ def _unload(
 
 
 def separation_of(path: list[State]) -> Separation:
-    """Compute the energies of an unloading, the error of its work, and the pull-off force."""
     depth = np.array([state.indentation for state in path])
     force = np.array([state.force for state in path])
     start, end = path[0], path[-1]

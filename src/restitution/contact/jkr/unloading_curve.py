@@ -43,7 +43,6 @@ class UnloadingCurve:
     fixed: bool = False
 
     def work(self) -> float:
-        """Work of unloading (J)."""
         x, F = self.indentation, self.force
         if not self.fixed:
             return -integrate_curve(x, F)
@@ -117,7 +116,6 @@ def complete_curve(path: Sequence[State]) -> list[tuple[float, float]]:
 
 
 def _smoothed(x: Array, F: Array) -> Array:
-    """Replace each value by that of a parabola through the nearest points, within their range."""
     window = min(_SMOOTHED, F.size)
     if window < 5:
         return F
@@ -153,7 +151,6 @@ class SharedUnloading:
         return cls(known, curve) if curve.balanced and balances_are_reliable(state) else None
 
     def agrees(self, state: State) -> bool:
-        """Whether `state.balance`, a force at an indentation, lies on the known unloading curve."""
         if state.balance is None:
             return False
         (at, force), x, F = state.balance, self.curve.indentation, self.curve.force

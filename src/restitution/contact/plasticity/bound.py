@@ -31,7 +31,6 @@ class Elastic(Plasticity):
 
     @property
     def hardness(self) -> float:
-        """inf (Pa)."""
         return math.inf
 
     def describe(self) -> str:
@@ -62,7 +61,6 @@ class ConstantBound(Plasticity):
 
     @property
     def hardness(self) -> float:
-        """Yield pressure (Pa)."""
         return self.yield_pressure
 
     def describe(self) -> str:

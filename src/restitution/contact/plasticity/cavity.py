@@ -108,7 +108,6 @@ class ExpandingCavity(Plasticity):
 
     @property
     def hardness(self) -> float:
-        """Pressure of a fully plastic contact, 2.8 Y (Pa)."""
         return FULL_CONSTRAINT * self.yield_strength
 
     def describe(self) -> str:
@@ -200,7 +199,6 @@ class ExpandingCavity(Plasticity):
 
 
 def yield_bound(contact: Contact, indentation: float, residual: float) -> tuple[Array, int]:
-    """Compute the bound (Pa) at `indentation` (m) from an elastic solve, as `Plasticity.bound`."""
     bound = np.full(contact.grid.nodes, contact.first_yield_pressure)
     tolerance = min(_RESIDUAL_FACTOR * residual, _LARGEST_RESIDUAL)
     pressure, box, convolutions = elastic_pressure(contact, _DEPTH_FACTOR * indentation, tolerance)
@@ -228,7 +226,6 @@ def _depth_ratio(crest_gap: Array, indentation: float) -> Array:
 
 
 def _smooth_pressure(contact: Contact, box: Box, nodes: Nodes, force: float) -> Array:
-    """Hertzian pressure (Pa) of the smooth bodies under `force` (N) at the `nodes` of `box`."""
     smooth = Hertz(contact.pair.radius, contact.pair.contact_modulus)
     x, y = contact.grid.x[box[0]] - contact.apex[0], contact.grid.y[box[1]] - contact.apex[1]
     return smooth.pressure(np.hypot(x[nodes[0]], y[nodes[1]]), smooth.indentation(force))

@@ -59,7 +59,6 @@ class Truncated(Plasticity):
 
     @property
     def hardness(self) -> float:
-        """Yield pressure (Pa)."""
         return self.yield_pressure
 
     def describe(self) -> str:
@@ -154,7 +153,6 @@ class Truncated(Plasticity):
         )
 
     def _force(self, elastic: State) -> float:
-        """Truncated force (N)."""
         truncated = np.minimum(elastic.box_pressure, self.yield_pressure)
         return float(truncated.sum()) * elastic.contact.grid.cell_area
 

@@ -104,7 +104,6 @@ class _Search:
         return self.states[indentation]
 
     def miss(self, state: State) -> float:
-        """Relative difference of the velocity of `state` from the prescribed velocity."""
         return abs(math.sqrt(max(state.loading_work, 0.0) / self._work) - 1)
 
     def first_depth(self) -> float:
@@ -153,7 +152,6 @@ class _Search:
         return max((d for d, s in self.states.items() if self._excess(s) < 0), default=0.0)
 
     def _step(self, state: State) -> float | None:
-        """Depth (m) after a Newton step; None if force or work is not positive."""
         force, work = state.force, state.loading_work
         if not (force > 0 and work > 0):
             return None
