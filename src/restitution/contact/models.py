@@ -79,6 +79,17 @@ class Plasticity(ABC):
         """Pressure (Pa) from which on the model differs from real bodies that yield."""
         return _ONSET * self.hardness
 
+    def weaker(self, factor: float) -> Plasticity:
+        """The model with its yield limit multiplied by `factor`; itself without such a limit.
+
+        Args:
+            factor: Factor (dimensionless).
+
+        Returns:
+            The model.
+        """
+        return self
+
     def bound(
         self, contact: Contact, indentation: float, residual: float
     ) -> tuple[Array | float, int]:

@@ -120,17 +120,9 @@ class Companions:
         return self._curve(self.coarse)
 
     def weaker(self, factors: Array) -> WorkCurve:
-        """The curve of the contact `coarse` with its yield limit multiplied by `factors`.
-
-        The yield limit is the yield pressure or the yield strength, whichever is given. `factors`
-        holds one factor for each of the depths.
-        """
+        """The curve of `coarse` with its yield limit multiplied by `factors`, one for each depth."""
         coarse = self.coarse
-        keys = ("yield_pressure", "yield_strength")
-        lowered = [
-            replace(coarse, **{key: factor * getattr(coarse, key) for key in keys})
-            for factor in factors
-        ]
+        lowered = [replace(coarse, plasticity=coarse.plasticity.weaker(f)) for f in factors]
         if all(contact == coarse for contact in lowered):
             return self.own
         return _curve_of(lowered, self.depths, self.case.unloading.method)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -63,6 +63,9 @@ class ConstantBound(Plasticity):
     def hardness(self) -> float:
         """Yield pressure (Pa)."""
         return self.yield_pressure
+
+    def weaker(self, factor: float) -> ConstantBound:
+        return replace(self, yield_pressure=factor * self.yield_pressure)
 
     def describe(self) -> str:
         if math.isinf(self.yield_pressure):

@@ -110,6 +110,9 @@ class ExpandingCavity(Plasticity):
         """Pressure of a fully plastic contact, 2.8 Y (Pa)."""
         return FULL_CONSTRAINT * self.yield_strength
 
+    def weaker(self, factor: float) -> ExpandingCavity:
+        return replace(self, yield_strength=factor * self.yield_strength)
+
     def describe(self) -> str:
         return f"yield strength {quantity(self.yield_strength, 'Pa')} ({self.label})"
 

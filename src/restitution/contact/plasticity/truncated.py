@@ -61,6 +61,9 @@ class Truncated(Plasticity):
         """Yield pressure (Pa)."""
         return self.yield_pressure
 
+    def weaker(self, factor: float) -> Truncated:
+        return replace(self, yield_pressure=factor * self.yield_pressure)
+
     def describe(self) -> str:
         return f"yield pressure {quantity(self.yield_pressure, 'Pa')} ({self.label})"
 
