@@ -25,8 +25,7 @@ _BESIDE = (
 def with_coordinates(results: xr.Dataset) -> xr.Dataset:
     """Make depth, velocity, nominal pressure and the points of unloading curves coordinates.
 
-    The values come from the variables, so files without coordinates get them as well. A dimension
-    whose variable is missing, or depends on other dimensions, stays without an index.
+    A dimension whose variable is missing, or depends on other dimensions, stays without an index.
     """
     index = {
         dimension: (dimension, results[name].values, results[name].attrs)

@@ -25,7 +25,6 @@ def as_now(row: dict[str, Any]) -> dict[str, Any]:
 
 
 def dataset_as_now(results: xr.Dataset) -> xr.Dataset:
-    """The same for the curve of a results file."""
     depths = results.sizes.get("indentation_max", 0)
     for column in (COLUMNS[name] for name in LATER if COLUMNS[name].variable not in results):
         results[column.variable] = column.labelled("indentation_max", np.full(depths, np.nan))

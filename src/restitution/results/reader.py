@@ -98,7 +98,6 @@ class RunResults:
     def in_memory(
         cls, curve: Curve, summary: dict[str, Any], dataset: xr.Dataset, oblique: Oblique = ()
     ) -> Self:
-        """Make results that are stored in no folder."""
         results = cls(None)
         # `cached_property` looks here first.
         vars(results).update(curve=curve, summary=summary, dataset=dataset, oblique=oblique)
@@ -106,13 +105,11 @@ class RunResults:
 
     @cached_property
     def curve(self) -> Curve:
-        """The points of the curve, from `curve.csv`."""
         rows = _read_rows(self._file("curve.csv"), REQUIRED, ALL_COLUMNS)
         return Curve(tuple(map(_point, rows)))
 
     @cached_property
     def summary(self) -> dict[str, Any]:
-        """The content of `summary.json`."""
         path = self._file("summary.json")
         content = read_json(path)
         try:
@@ -149,12 +146,10 @@ class RunResults:
 
     @cached_property
     def case_text(self) -> str:
-        """The text of the case file."""
         return self._case_and_depths[0]
 
     @cached_property
     def case(self) -> Case:
-        """The case of the run, parsed from `case_text`."""
         try:
             return parse_case(self.case_text)
         except CaseError as error:
@@ -297,7 +292,6 @@ class StudyResults:
 
     @cached_property
     def text(self) -> str:
-        """The text of the study file."""
         return read_text(self.folder / "study.toml")
 
     @cached_property
@@ -306,7 +300,6 @@ class StudyResults:
         return with_coordinates(read_netcdf(self.folder / "study.nc"))
 
     def run(self, name: str) -> RunResults:
-        """Return the results of the case `name`."""
         return RunResults(self.folder / "cases" / name)
 
     def _summary(self) -> list[str]:
@@ -342,7 +335,6 @@ def _point(row: Mapping[str, Any]) -> Point:
 def _read_rows(
     path: Path, required: Iterable[str], columns: Mapping[str, Column]
 ) -> list[dict[str, Any]]:
-    """Read and check a table, which must have the columns `required`."""
     cells = read_cells(path, required)
     rows = [as_now(read_numbers(path, line, row, columns)) for line, row in enumerate(cells, 2)]
     check_file(path)

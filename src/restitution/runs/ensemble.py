@@ -59,15 +59,11 @@ def run_realisations(
 ) -> dict[str, Any]:
     """Run `case` on each of its surfaces, and return the summary.
 
-    A periodic case is run by `run_periodic`. A single surface is run by `run_case` alone. If there
-    are several surfaces, the run on surface n (n = 1, 2, …) is stored in a folder
-    `realisation-<n>`, and the curve of `out` contains the means (`mean_points`). The seed of
-    surface n is the seed of the case plus n − 1. For a scan without a seed, `place` (the part of
-    the scan that is used) increases in the same way. If the run on a surface fails, its error is
-    recorded and the other runs continue. If all runs fail, the first error is raised. If the first
-    surface cannot be made, for example because the scan is missing, no run starts. With
-    `grid.refine = "auto"`, the first surface decides the grid of each depth for all surfaces
-    (`refinement`).
+    With several surfaces, the run on surface n (n = 1, 2, …) is stored in a folder
+    `realisation-<n>`, and the curve of `out` contains the means (`mean_points`). Its seed is that
+    of the case plus n − 1 (of a scan without a seed, its `place`). A surface that fails is
+    recorded, and the others continue; if all fail, the first error is raised. With `grid.refine =
+    "auto"`, the first surface decides the grids of all.
     """
     if case.periodic:
         return run_periodic(case, text, folder, out, progress, warn)
@@ -82,8 +78,6 @@ def run_realisations(
 
 
 class _Ensemble:
-    """The results of an ensemble so far."""
-
     def __init__(
         self, case: Case, text: str, folder: Path, out: ResultsFolder, log: RunLog
     ) -> None:
@@ -97,7 +91,6 @@ class _Ensemble:
         self.one_sticking: Sticking | None = None  # with the errors of grid and materials
 
     def compute(self) -> None:
-        """Run the case on every surface, and estimate the errors due to grid and materials."""
         self.case.realisation(0).surface(self.folder)  # end here if the scan cannot be read
         self.case = settled(self.case, self.folder, self.log.warn)
         for number in range(self.case.realisations):
@@ -138,11 +131,7 @@ class _Ensemble:
             self.ended.append({"realisation": number + 1, "depths": depths, "reason": reason})
 
     def _add_errors(self) -> None:
-        """Estimate the errors due to grid and materials, on one surface.
-
-        This is the surface whose curve has the largest number of depths. The scatter between
-        surfaces follows from the ensemble itself.
-        """
+        """Estimate the errors due to grid and materials, on the surface with the most depths."""
         if not self.parts or not self.case.total_error:
             return
         number = max(self.parts, key=lambda k: len(self.parts[k].curve.points))
@@ -215,7 +204,6 @@ class _Ensemble:
         }
 
     def _result_warnings(self, whole: list[Point]) -> Iterator[str]:
-        """Yield the warnings about the points of all surfaces (`whole`) and about their means."""
         means = self.out.curve.points
         yield from unresolved(whole)
         grid = self.case.realisation(0).contact(self.folder).grid
@@ -238,18 +226,14 @@ class _Ensemble:
 
 
 def mean_points(curves: Sequence[Sequence[Point]], errors: Sequence[Point] = ()) -> list[MeanPoint]:
-    """Make the curve of an ensemble: for each depth, a point of means over the surfaces.
+    """Make the curve of an ensemble: at each depth, means over the surfaces that reached it.
 
-    A point is computed from the surfaces that reached its depth. Most fields are means over these
-    surfaces. `residual`, `model_error` and `refine` are the largest values, `median_patch_nodes` is
-    the smallest value and `convolutions` the sum. Flags are true if they are true for all of these
-    surfaces. The 95 % confidence interval of the mean COR is mean ± t s/√n with Student's t, the
-    sample standard deviation s and the number n of surfaces, clipped to [0, 1]. With one surface,
-    s and the ends are NaN.
+    Exceptions are in `_WORST`; flags are true if they are true for all of these surfaces. The 95 %
+    confidence interval of the mean COR is mean ± t s/√n, clipped to [0, 1]; NaN for one surface.
 
-    `errors` are the points of one surface. Their errors due to grid and materials are copied to the
-    means. `surface_scatter` is half of the width of the confidence interval. If only one surface
-    reached a depth, the total error of this depth stays unknown.
+    `errors` are the points of one surface, whose errors due to grid and materials are taken over.
+    `surface_scatter` is half of the width of the confidence interval. The total error of a depth
+    that only one surface reached stays unknown.
     """
     count = max(map(len, curves), default=0)
     alone: list[Point | None] = [

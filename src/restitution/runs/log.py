@@ -18,8 +18,7 @@ if TYPE_CHECKING:
 Say = Callable[[str], None]
 
 
-def ignore(_: str) -> None:
-    """Ignore a message."""
+def ignore(_: str) -> None: ...
 
 
 @dataclass
@@ -27,9 +26,8 @@ class RunLog:
     """The log of one run, or of several runs of one case.
 
     `progress` is called with a few words after every step, and `tell` with every warning.
-    `warnings` holds the warnings so far, which are stored with the results. `material_parts` holds
-    the contributions of library values to the material error. `status` and `reason` say how the run
-    ended.
+    `warnings` and `material_parts` (contributions of library values to the material error) are
+    stored with the results; `status` and `reason` say how the run ended.
     """
 
     progress: Say = ignore
@@ -47,23 +45,17 @@ class RunLog:
         return round(time.perf_counter() - self.began, 3)
 
     def warn(self, warning: str) -> None:
-        """Issue a warning, and store it with the results."""
         self.warnings.append(warning)
         self.tell(warning)
 
     def progress_of(self, name: str) -> Say:
-        """Return a `progress` function for one of several runs.
-
-        The function puts the `name` of the run before each message.
-        """
+        """Return a `progress` that puts `name`, one of several runs, before each message."""
         return lambda words: self.progress(f"{name}, {words}")
 
     def warnings_of(self, part: ResultsFolder) -> Say:
-        """Return a `warn` function for one of several runs.
+        """Return a `warn` that passes on the warnings before the first result of `part`.
 
-        The function passes on the warnings about the input, that is, those issued before the run
-        has its first result. It drops later warnings, because the summary of all runs replaces
-        them.
+        Later warnings are dropped, because the summary of all runs replaces them.
         """
 
         def say(warning: str) -> None:
@@ -74,11 +66,9 @@ class RunLog:
 
     @contextmanager
     def record(self, out: ResultsFolder, keep: Callable[[], dict[str, Any]]) -> Iterator[None]:
-        """Record how the `with` body ends, and let `keep` write the results.
+        """Record how the `with` body ends, and let `keep` write the results and return the summary.
 
-        `keep` returns the summary. It is stored in the attribute `summary`, and the warnings in it
-        are issued. If nothing was computed, the summary is empty and the folder is removed. Errors
-        of the body are raised again.
+        The warnings in the summary are issued. If it is empty, the folder is removed.
         """
         try:
             yield

@@ -31,7 +31,7 @@ _MENTIONED = 0.3
 
 @dataclass(frozen=True)
 class MaterialPart:
-    """Largest change of COR due to the spread of one library value, over the rows of a run.
+    """Largest change of COR due to the spread of one library value, over the points of a run.
 
     `key` is the key of the case file, such as "first.hardness"; `low` and `high` are in SI units.
     """
@@ -64,7 +64,6 @@ def largest_parts(parts: Iterable[MaterialPart]) -> list[MaterialPart]:
 
 
 def as_rows(parts: Iterable[MaterialPart]) -> list[dict[str, Any]]:
-    """The contributions for `summary.json`."""
     return [asdict(part) for part in largest_parts(parts)]
 
 

@@ -57,8 +57,7 @@ def run_periodic(
 ) -> dict[str, Any]:
     """Run the periodic `case` and return the summary; the arguments are those of `run_case`.
 
-    A depth that cannot be solved ends the curve. Its error is raised again after the results so far
-    are written.
+    A depth that cannot be solved ends the curve; its error is raised after the results are written.
     """
     log, deepest = RunLog(progress, warn), list[State]()
     histograms: list[Histogram] = []
@@ -91,7 +90,7 @@ def run_periodic(
 
 
 def _edges_of_scans(case: Case) -> list[str]:
-    """Return a warning for each scan without `extend`, because its opposite edges do not match."""
+    """A warning for each scan without `extend`, because its opposite edges do not match."""
     return [
         f"roughness.file: the opposite edges of {part.file} do not match, so the surface has steps "
         'along the edges of the grid; set roughness.extend = "twin" for a periodic surface with '
@@ -102,7 +101,6 @@ def _edges_of_scans(case: Case) -> list[str]:
 
 
 def _stiffness(state: State) -> float:
-    """Stiffness (Pa/m) of `state`; NaN if it is not defined."""
     with suppress(NotConvergedError):
         return normal_stiffness(state)
     return math.nan
@@ -115,7 +113,6 @@ def _write_results(
     deepest: State,
     histograms: Sequence[Histogram],
 ) -> dict[str, Any]:
-    """Write the results of the case `read` and its text; return the summary."""
     (case, text), contact, points = read, deepest.contact, out.periodic
     summary: dict[str, Any] = {
         "title": case.title,

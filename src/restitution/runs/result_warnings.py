@@ -22,7 +22,6 @@ _BALANCE = 0.01  # relative difference of unloading work and stored energy
 
 
 def unresolved(points: Sequence[Point | PeriodicPoint]) -> Iterator[str]:
-    """Yield a warning if contact patches have too few nodes."""
     depths = [point.indentation for point in points]
     patches = [point.median_patch_nodes for point in points]
     yield from map(message, unresolved_patches(depths, patches))
@@ -33,7 +32,7 @@ def too_coarse_for_adhesion(
 ) -> Iterator[str]:
     """Yield a warning if cells are too large for adhesion, with the finer grid and its cost.
 
-    `grid` is the grid of the deepest of the `points`, and `seconds` is the time of the run so far.
+    `grid` is that of the deepest of `points`, and `seconds` the time of the run so far.
     """
     factor = case.grid.factor
     unrefined = factor * max(grid.spacing)
@@ -51,7 +50,6 @@ def too_coarse_for_adhesion(
 
 
 def imprecise(points: Sequence[Point], case: Case) -> Iterator[str]:
-    """Yield a warning if the COR of some depths is less precise than requested."""
     asked = max(_IMPRECISE, case.unloading.restitution_error)
     missed = [point for point in points if point.restitution_error > asked]
     if missed:
@@ -71,7 +69,6 @@ def imprecise(points: Sequence[Point], case: Case) -> Iterator[str]:
 def velocities_missed(
     points: Sequence[Point], case: Case, prescribed: Sequence[float]
 ) -> Iterator[str]:
-    """Yield a warning if impact velocities differ from the prescribed values."""
     if case.impact is None:
         return
     pairs = zip((point.impact_velocity for point in points), prescribed, strict=False)

@@ -96,21 +96,16 @@ def run_case(
     *,
     errors: bool = True,
 ) -> dict[str, Any]:
-    """Run `case` and return the summary.
+    """Run `case`, which has one surface, and return the summary.
 
-    `text` is the text of the case file, and files named in the case are relative to `folder`. The
-    case has one surface (see `ensemble`). `grid.refine = "auto"` is replaced first (`refinement`).
+    `text` is the text of the case file, and its files are relative to `folder`. With `errors`, a
+    depth that does not converge is left out, and the total errors are computed unless the case has
+    `total_error = false`. Without `errors`, it ends the curve, because several runs are compared by
+    the number of their point. Contact at the edge of the grid always ends the curve.
 
-    With `errors`, a depth that does not converge is left out, and the total errors of the rows are
-    computed (`error_budget`) unless the case has total_error = false. Without `errors`, a depth
-    that does not converge ends the curve, because rows of several runs are compared by their row
-    number. Contact at the edge of the grid always ends the curve. If depths fail, the first of
-    their errors is raised at the end of the run. Before any error is raised, the results so far and
-    the reason are written. If there are no results, the folder is removed.
-
-    Depths are measured from first touch on the finest grid. `progress` is called with a few words
-    after every depth. `warn` is called with every warning: about the input before the first solve,
-    and about the results at the end, even after an error.
+    Results so far are written before the first error is raised; a folder without results is
+    removed. `progress` is called after every depth. `warn` is called with the warnings about the
+    input before the first solve, and with those about the results at the end.
     """
     case.require_impact()
     run = _Run(progress, warn, errors=errors)
@@ -151,7 +146,6 @@ def run_case(
 def _write_results(
     case: Case, text: str, out: ResultsFolder, run: _Run, deepest: State
 ) -> dict[str, Any]:
-    """Write the results of the run, and return its summary."""
     summary = _summarise(case, deepest.contact, out, run)
     summary["seconds"] = run.seconds
     dataset = results_dataset(out, deepest)
@@ -194,7 +188,7 @@ def _load_and_unload(
 
 
 def _keep(impact: Impact, case: Case, out: ResultsFolder, run: _Run) -> None:
-    """Write the row of an impact, and its unloading curve if the case asks for it."""
+    """Write the point of an impact, and its unloading curve if the case asks for it."""
     state, collision = impact.state, impact.collision
     with hold_signals():  # an interruption leaves a complete row or no row
         run.prescribed.append(impact.load.prescribed)
@@ -209,7 +203,7 @@ def _keep(impact: Impact, case: Case, out: ResultsFolder, run: _Run) -> None:
 
 
 def _check(state: State, back: Sequence[State], collision: Collision) -> dict[str, float]:
-    """Return the energy balance of an unloading curve, for the diagnostics of the run."""
+    """The energy balance of an unloading curve, for the diagnostics of the run."""
     work = unloading_curve(list(back)).work()
     return {
         "max_indentation_m": state.indentation,
@@ -287,7 +281,6 @@ def _materials(case: Case) -> dict[str, Any]:
 
 
 def _result_warnings(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> Iterator[str]:
-    """Yield the warnings about the results of the run."""
     points = out.curve.points
     yield from unresolved(points)
     yield from too_coarse_for_adhesion(case, contact.grid, points, run.seconds)
