@@ -71,7 +71,7 @@ def _studies(a: Path, b: Path) -> Comparison:
             "common values"
         )
     compared = [_curves(of_a[key], of_b[key], dict(key)) for key in common]
-    rows = [row for found, _ in compared for row in found]
+    rows = [row for curve, _ in compared for row in curve]
     notes = list(dict.fromkeys(note for _, said in compared for note in said))
     for name, this, other in ((a, of_a, of_b), (b, of_b, of_a)):
         if alone := len(this.keys() - other.keys()):

@@ -25,7 +25,6 @@ from restitution.display import counted, quantity, summary_html, summary_text
 from restitution.errors import CaseError, OutputError, first_problem
 from restitution.results.checksums import check_file
 from restitution.results.coordinates import with_coordinates
-from restitution.results.older import REQUIRED, as_now, dataset_as_now
 from restitution.results.schema import (
     ALL_COLUMNS,
     ALL_OBLIQUE_COLUMNS,
@@ -51,6 +50,9 @@ from restitution.results.tables import (
 )
 
 Oblique = tuple[ObliquePoint, ...]
+LATER = frozenset({"pull_off_error_N", "adhesive_spacing_m"})
+"""Columns that older tables lack; they are read as empty."""
+REQUIRED = tuple(name for name in COLUMNS if name not in LATER)
 
 
 class _Stored(BaseModel):
@@ -339,3 +341,21 @@ def _read_rows(
     rows = [as_now(read_numbers(path, line, row, columns)) for line, row in enumerate(cells, 2)]
     check_file(path)
     return rows
+
+
+def as_now(row: dict[str, Any]) -> dict[str, Any]:
+    """Bring a row of an older table up to date."""
+    if "adhesion_resolved" not in row:
+        return row
+    resolved = row["resolved"] and row["adhesion_resolved"]  # `resolved` left adhesion out
+    missing = dict.fromkeys(LATER - row.keys(), math.nan)
+    return row | missing | {"resolved": resolved}
+
+
+def dataset_as_now(results: xr.Dataset) -> xr.Dataset:
+    depths = results.sizes.get("indentation_max", 0)
+    for column in (COLUMNS[name] for name in LATER if COLUMNS[name].variable not in results):
+        results[column.variable] = column.labelled("indentation_max", np.full(depths, np.nan))
+    if {"resolved", "adhesion_resolved"} <= set(results):
+        results["resolved"] = results["resolved"] & results["adhesion_resolved"]
+    return results

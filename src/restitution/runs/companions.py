@@ -137,8 +137,8 @@ class Companions:
         here, mass = self.own.at(work), coarse.pair.mass
         changes = []
         for ends in self.material_ends():
-            found = [self.curve(contact).at(work) for contact in ends]
-            changes.append(np.maximum(*(np.abs(values - here) for values in found)))
+            low, high = (np.abs(self.curve(contact).at(work) - here) for contact in ends)
+            changes.append(np.maximum(low, high))
         masses = [case.pair().mass for case in self._ends]
         if mass is not None and any(m != mass for m in masses):
             moved = [self.own.at(work * m / mass) for m in masses if m is not None]
@@ -217,8 +217,8 @@ def coarser_contact(contact: Contact) -> Contact:
 def _with_modulus_of(pair: Pair, other: Pair) -> Pair:
     return Pair(
         *(
-            replace(body, youngs_modulus=its.youngs_modulus, poissons_ratio=its.poissons_ratio)
-            for body, its in ((pair.first, other.first), (pair.second, other.second))
+            replace(body, youngs_modulus=like.youngs_modulus, poissons_ratio=like.poissons_ratio)
+            for body, like in ((pair.first, other.first), (pair.second, other.second))
         )
     )
 

@@ -19,11 +19,7 @@ from restitution.curve.columns import array
 from restitution.curve.curve import largest
 from restitution.curve.point import Point
 from restitution.errors import CaseError
-from restitution.results.writer import (
-    ResultsFolder,
-    curve_variables,
-    status_attributes,
-)
+from restitution.results.writer import ResultsFolder, curve_variables, status_attributes
 from restitution.runs.companions import Companions
 from restitution.runs.depths import later_touches
 from restitution.runs.error_budget import (
@@ -36,7 +32,7 @@ from restitution.runs.error_budget import (
     widened_error,
 )
 from restitution.runs.log import RunLog, Say, ignore
-from restitution.runs.refinement import settled, with_chosen_adhesion
+from restitution.runs.refinement import with_chosen_adhesion, with_chosen_grids
 from restitution.runs.run import run_case
 
 
@@ -101,7 +97,7 @@ def run_convergence(
     with log.record(
         out, lambda: _write_results(case, out, runs, spread, log, unsettled) if runs else {}
     ):
-        case = settled(case, folder, log.warn)
+        case = with_chosen_grids(case, folder, log.warn)
         case = case.refined(max(case.factors()))
         if case.interface.adhesive_energy and case.interface.adhesion is None:
             case = with_chosen_adhesion(case, case.contact(folder), log.warn)
@@ -218,10 +214,8 @@ def _write_results(
     out.put_oblique(one.oblique)
     convolutions = sum(int(p.convolutions) for grid in runs.values() for p in grid.points)
     summary = one.summary | {
-        "status": log.status,
-        "reason": log.reason,
+        **log.head(case),
         "warnings": unsettled + one.summary["warnings"],
-        "title": case.title,
         "grids": sorted(runs),
         "observed_order": None if math.isnan(order) else order,
         "seconds": log.seconds,

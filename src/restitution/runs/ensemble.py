@@ -31,12 +31,14 @@ from restitution.runs.error_budget import (
 from restitution.runs.log import RunLog, Say, ignore
 from restitution.runs.oblique import mean_oblique
 from restitution.runs.periodic import run_periodic
-from restitution.runs.refinement import settled
+from restitution.runs.refinement import with_chosen_grids
 from restitution.runs.result_warnings import too_coarse_for_adhesion, unresolved
 from restitution.runs.run import run_case
 
 # Fields that combine only surfaces on which an impact has this maximum indentation.
 _OF_IMPACTS = ("restitution", "impact_velocity", "restitution_error", "model_error", "sticks")
+# Keys of `summary.json` that the run on one surface gives.
+_OF_ONE = ("model", "materials", "conventions", "derived", "device", "kernels", "versions")
 # Fields of an ensemble's curve that are not means, and the functions that combine the values of
 # the surfaces. Flags are not listed: they are true if they are true for all surfaces.
 _WORST: dict[str, Callable[[list[float]], float]] = {
@@ -92,7 +94,7 @@ class _Ensemble:
 
     def compute(self) -> None:
         self.case.realisation(0).surface(self.folder)  # end here if the scan cannot be read
-        self.case = settled(self.case, self.folder, self.log.warn)
+        self.case = with_chosen_grids(self.case, self.folder, self.log.warn)
         for number in range(self.case.realisations):
             self._run(number)
         self._add_errors()
@@ -172,9 +174,7 @@ class _Ensemble:
         points = self.out.curve.points
         whole = [point for part in self.parts.values() for point in part.curve.points]
         return {
-            "title": self.case.title,
-            "status": self.log.status,
-            "reason": self.log.reason,
+            **self.log.head(self.case),
             "realisations_asked": self.case.realisations,
             "realisations": self.ended,
             "confidence": CONFIDENCE,
@@ -182,18 +182,7 @@ class _Ensemble:
             "depths_computed": len(points),
             "warnings": [*self.log.warnings, *self._result_warnings(whole)],
             "sticking": summary_of(mean_of(list(self.sticking.values()), self.one_sticking)),
-            **{
-                key: one[key]
-                for key in (
-                    "model",
-                    "materials",
-                    "conventions",
-                    "derived",
-                    "device",
-                    "kernels",
-                    "versions",
-                )
-            },
+            **{key: one[key] for key in _OF_ONE},
             "diagnostics": {
                 f"largest_{name}": largest(whole, name)
                 for name in ("residual", "restitution_error")

@@ -3,22 +3,36 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from restitution.errors import RestitutionError, one_line
+from restitution.numerics.convolution.device import current
+from restitution.numerics.kernels import instruction_set
 from restitution.results.interruption import hold_signals
 from restitution.results.writer import ResultsFolder
 
 if TYPE_CHECKING:
+    from restitution.case.case import Case
+    from restitution.curve.periodic import PeriodicPoint
+    from restitution.curve.point import Point
     from restitution.runs.material_advice import MaterialPart
 
 Say = Callable[[str], None]
 
 
 def ignore(_: str) -> None: ...
+
+
+def solved_with(points: Sequence[Point | PeriodicPoint]) -> dict[str, Any]:
+    """The entries of `summary.json` about the solver."""
+    return {
+        "device": current().name,
+        "kernels": instruction_set,
+        "convolutions": sum(int(point.convolutions) for point in points),
+    }
 
 
 @dataclass
@@ -43,6 +57,10 @@ class RunLog:
     def seconds(self) -> float:
         """Time since the start (s)."""
         return round(time.perf_counter() - self.began, 3)
+
+    def head(self, case: Case) -> dict[str, str]:
+        """The entries of `summary.json` that say how the run ended."""
+        return {"title": case.title, "status": self.status, "reason": self.reason}
 
     def warn(self, warning: str) -> None:
         self.warnings.append(warning)

@@ -56,11 +56,11 @@ class MaterialPart:
 
 def largest_parts(parts: Iterable[MaterialPart]) -> list[MaterialPart]:
     """One contribution for each key, the largest over the grids of a run, in decreasing order."""
-    found: dict[str, MaterialPart] = {}
+    largest: dict[str, MaterialPart] = {}
     for part in parts:
-        if part.error > 0 and part.error >= found.get(part.key, part).error:
-            found[part.key] = part
-    return sorted(found.values(), key=lambda part: -part.error)
+        if part.error > 0 and part.error >= largest.get(part.key, part).error:
+            largest[part.key] = part
+    return sorted(largest.values(), key=lambda part: -part.error)
 
 
 def as_rows(parts: Iterable[MaterialPart]) -> list[dict[str, Any]]:

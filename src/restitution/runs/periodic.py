@@ -18,13 +18,9 @@ from restitution.contact.state import State
 from restitution.curve.follow import loaded
 from restitution.curve.periodic import Histogram, PeriodicPoint
 from restitution.errors import NotConvergedError
-from restitution.numerics.convolution.device import current
-from restitution.numerics.kernels import instruction_set
 from restitution.results.interruption import hold_signals
 from restitution.results.maps import DepthMaps, write_maps
-from restitution.results.periodic import (
-    periodic_dataset,
-)
+from restitution.results.periodic import periodic_dataset
 from restitution.results.schema import PERIODIC_FILE
 from restitution.results.writer import (
     ResultsFolder,
@@ -33,7 +29,7 @@ from restitution.results.writer import (
     versions,
 )
 from restitution.runs.depths import loads_of
-from restitution.runs.log import RunLog, Say, ignore
+from restitution.runs.log import RunLog, Say, ignore, solved_with
 from restitution.runs.messages import input_warnings, require_possible
 from restitution.runs.result_warnings import unresolved
 from restitution.surfaces import describe
@@ -115,9 +111,7 @@ def _write_results(
 ) -> dict[str, Any]:
     (case, text), contact, points = read, deepest.contact, out.periodic
     summary: dict[str, Any] = {
-        "title": case.title,
-        "status": log.status,
-        "reason": log.reason,
+        **log.head(case),
         "depths_asked": len(case.depths()),
         "depths_computed": len(points),
         "warnings": [*log.warnings, *unresolved(points)],
@@ -134,9 +128,7 @@ def _write_results(
         "surface": dict(contact.surface.provenance),
         "surface_statistics": describe(contact.surface),
         "diagnostics": {"largest_residual": max(point.residual for point in points)},
-        "device": current().name,
-        "kernels": instruction_set,
-        "convolutions": sum(int(point.convolutions) for point in points),
+        **solved_with(points),
         "seconds": log.seconds,
         "versions": versions(),
     }

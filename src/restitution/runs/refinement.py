@@ -43,7 +43,7 @@ _SLOWER = 4.8
 _UNITS = {"indentation": "m", "load": "N", "impact": "m/s", "pressure": "Pa"}
 
 
-def settled(case: Case, folder: Path, warn: Say = ignore) -> Case:
+def with_chosen_grids(case: Case, folder: Path, warn: Say = ignore) -> Case:
     """Replace `grid.refine = "auto"` in `case` by a factor for each depth.
 
     Each depth gets the coarsest grid on which half of the contact nodes lie in patches of at least

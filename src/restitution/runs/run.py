@@ -21,8 +21,6 @@ from restitution.contact.state import State
 from restitution.curve.curve import largest
 from restitution.curve.follow import Impact, follow
 from restitution.errors import DomainError, NotConvergedError, RestitutionError
-from restitution.numerics.convolution.device import current
-from restitution.numerics.kernels import instruction_set
 from restitution.results.interruption import hold_signals
 from restitution.results.maps import DepthMaps, write_maps
 from restitution.results.writer import (
@@ -40,10 +38,10 @@ from restitution.runs.error_budget import (
     interrupted_errors,
     total_error_summary,
 )
-from restitution.runs.log import RunLog, Say, ignore
+from restitution.runs.log import RunLog, Say, ignore, solved_with
 from restitution.runs.messages import input_warnings, require_possible
 from restitution.runs.oblique import is_oblique, oblique_points
-from restitution.runs.refinement import settled, with_chosen_adhesion
+from restitution.runs.refinement import with_chosen_adhesion, with_chosen_grids
 from restitution.runs.result_warnings import (
     imprecise,
     too_coarse_for_adhesion,
@@ -113,7 +111,7 @@ def run_case(
     with run.record(
         out, lambda: _write_results(case, text, out, run, run.deepest) if run.deepest else {}
     ):
-        case = settled(case, folder, run.warn)
+        case = with_chosen_grids(case, folder, run.warn)
         contact = case.contact(folder)
         case = with_chosen_adhesion(case, contact, run.warn)
         deepest = deepest_indentation(case)
@@ -204,33 +202,22 @@ def _keep(impact: Impact, case: Case, out: ResultsFolder, run: _Run) -> None:
 
 def _check(state: State, back: Sequence[State], collision: Collision) -> dict[str, float]:
     """The energy balance of an unloading curve, for the diagnostics of the run."""
-    work = unloading_curve(list(back)).work()
+    work, lost = unloading_curve(list(back)).work(), collision.adhesive_loss
+    unbalance = interface_of(state.contact).unbalance(state, back[-1], work, lost)
     return {
         "max_indentation_m": state.indentation,
         "unloading_work_J": work,
-        "adhesive_loss_J": collision.adhesive_loss,
-        "relative_to_stored_energy": _unbalance(state, back[-1], work, collision.adhesive_loss),
+        "adhesive_loss_J": lost,
+        "relative_to_stored_energy": unbalance,
         "restitution_from_energy_estimate": collide(state, method="energy-estimate").restitution,
         "separation_indentation_m": back[-1].indentation,
     }
 
 
-def _unbalance(state: State, end: State, work: float, lost: float) -> float:
-    """Return the relative error of the energy balance of an unloading curve.
-
-    The error is the difference between `work` (J) and the work that the balance predicts, relative
-    to the stored energy. `lost` is the energy (J) that adhesion dissipates between `state` and
-    `end`.
-    """
-    return interface_of(state.contact).unbalance(state, end, work, lost)
-
-
 def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> dict[str, Any]:
     points = out.curve.points
     return {
-        "title": case.title,
-        "status": run.status,
-        "reason": run.reason,
+        **run.head(case),
         "depths_asked": len(case.depths()),
         "depths_computed": len(points),
         "warnings": [*run.warnings, *_result_warnings(case, contact, out, run)],
@@ -259,9 +246,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> d
             **total_error_summary(case, points, run.material_parts),
             "unloading_checks": run.unloading_checks,
         },
-        "device": current().name,
-        "kernels": instruction_set,
-        "convolutions": sum(int(point.convolutions) for point in points),
+        **solved_with(points),
         "seconds_by_depth": run.depth_seconds,
         "versions": versions(),
     }
@@ -273,7 +258,7 @@ def _materials(case: Case) -> dict[str, Any]:
     return {
         name: {
             "material": body.material,
-            **{key: found.model_dump() for key, found in body.from_library().items()},
+            **{key: value.model_dump() for key, value in body.from_library().items()},
         }
         for name, body in case.bodies().items()
         if body.material is not None
