@@ -25,18 +25,18 @@ silica = rs.Body(radius=5e-6, youngs_modulus=70e9, poissons_ratio=0.17, density=
 grid = rs.Grid(nodes=(256, 256), spacing=(2e-9, 2e-9))
 surface = rs.generate_surface(grid, kind="gaussian", rms={rms}, correlation_length=50e-9, seed=1)
 pair = rs.Pair(silica, silica)
-contact = rs.Contact(pair, surface, work_of_adhesion=0.05, adhesion="{model}"{more})
+contact = rs.Contact(pair, surface, adhesion=rs.{model}(0.05){more})
 rs.collide(rs.solve(contact, indentation={depth}))
 """
 CASES = {
-    "cohesive, elastic": {"rms": 1e-9, "model": "cohesive", "more": "", "depth": 3e-9},
+    "cohesive, elastic": {"rms": 1e-9, "model": "Cohesive", "more": "", "depth": 3e-9},
     "cohesive, yielding": {
         "rms": 2e-9,
-        "model": "cohesive",
-        "more": ", yield_pressure=2e9",
+        "model": "Cohesive",
+        "more": ", plasticity=rs.ConstantBound(2e9)",
         "depth": 3e-9,
     },
-    "JKR": {"rms": 2e-9, "model": "jkr", "more": "", "depth": 10e-9},
+    "JKR": {"rms": 2e-9, "model": "JKRLimit", "more": "", "depth": 10e-9},
 }
 REPORT = """\
 # Beside busy processes

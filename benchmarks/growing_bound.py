@@ -20,9 +20,12 @@ from unit import machine, today  # noqa: E402
 
 from restitution import (  # noqa: E402
     Body,
+    ConstantBound,
     Contact,
+    ExpandingCavity,
     Grid,
     Pair,
+    Plasticity,
     Surface,
     collide,
     generate_surface,
@@ -36,7 +39,7 @@ NODES = 512
 GRID = Grid((NODES, NODES), (0.25e-6, 0.25e-6))
 STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25)
 DEPTHS = np.geomspace(2e-9, 5e-6, 24)  # the depths of benchmarks/steel.toml
-CONSTANT, GROWING = {"yield_pressure": 750e6}, {"yield_strength": 268e6}
+CONSTANT, GROWING = ConstantBound(750e6), ExpandingCavity(268e6)
 
 REPORT = """\
 # Time of the bound that grows
@@ -73,19 +76,19 @@ def surfaces() -> dict[str, Surface]:
     }
 
 
-def load(surface: Surface, strength: dict[str, float]) -> None:
+def load(surface: Surface, strength: Plasticity) -> None:
     """Load to all depths."""
-    for _ in loading_path(Contact(Pair(STEEL, STEEL), surface, **strength), DEPTHS):
+    for _ in loading_path(Contact(Pair(STEEL, STEEL), surface, plasticity=strength), DEPTHS):
         pass
 
 
-def load_and_unload(surface: Surface, strength: dict[str, float]) -> None:
+def load_and_unload(surface: Surface, strength: Plasticity) -> None:
     """Load to all depths and unload from each."""
-    for state in loading_path(Contact(Pair(STEEL, STEEL), surface, **strength), DEPTHS):
+    for state in loading_path(Contact(Pair(STEEL, STEEL), surface, plasticity=strength), DEPTHS):
         collide(state)
 
 
-def seconds(work: Curve, surface: Surface, strength: dict[str, float]) -> float:
+def seconds(work: Curve, surface: Surface, strength: Plasticity) -> float:
     """Processor time of a curve."""
     began = time.process_time()
     work(surface, strength)

@@ -10,7 +10,8 @@ from contact_keys import contact_of
 from restitution.collision import Collision, collide
 from restitution.contact.bodies import Body, Pair
 from restitution.contact.contact import Contact, smooth
-from restitution.contact.jkr.limit import HertzianApproach, JKRLimit
+from restitution.contact.jkr.approach import HertzianApproach
+from restitution.contact.jkr.limit import JKRLimit
 from restitution.contact.loading import solve, step
 from restitution.contact.plasticity.truncated import Truncated
 from restitution.numerics.grid import Grid

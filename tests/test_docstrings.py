@@ -20,8 +20,12 @@ import docstring_parser
 import pytest
 
 import restitution as rs
+from restitution.contact.jkr.approach import Approach
+from restitution.contact.jkr.detachment import Detachment
+from restitution.contact.models import Adhesion, Plasticity
 
 PACKAGE = Path(rs.__file__).parent
+MODELS = Plasticity, Adhesion, Approach, Detachment  # these document what their models override
 NUMBER = re.compile(r"\b(float|Values|Array|NDArray|ArrayLike)\b")
 UNIT = re.compile(
     r"\(([^()]*, )?(kg/m³|kg|m/s|m²|m³|m⁴|1/m|m|s|Pa|N/m|N·s/m|N|J/m²|J|W|Hz|rad/s|rad|°|1|"
@@ -35,7 +39,7 @@ def _objects(owner: object, name: str) -> dict[str, object]:
     if isinstance(owner, ModuleType):
         for part in owner.__all__:
             objects |= _objects(getattr(owner, part), f"{name}.{part}")
-    elif inspect.isclass(owner):
+    elif inspect.isclass(owner) and not issubclass(owner, MODELS):
         for part, value in vars(owner).items():
             documented = inspect.isroutine(value) or hasattr(value, "__get__")
             if not part.startswith("_") and documented and getattr(value, "__doc__", None):
@@ -92,7 +96,11 @@ def _tolerated(line: str) -> bool:
     if "DOC503" in line:
         documented, raised = re.findall(r"\[(.*?)\]", line)
         return set(raised.split(", ")) <= set(documented.split(", "))
-    return "DOC502" in line
+    return (
+        "DOC502" in line
+        or "DOC601" in line
+        or ("DOC603" in line and ("label" in line or "strengths" in line))
+    )
 
 
 @pytest.mark.parametrize("name", OURS)

@@ -130,6 +130,14 @@ def test_every_page_is_in_a_table_of_contents():
     assert {path for path in PAGES if path.is_relative_to(ROOT / "docs")} <= listed
 
 
+def test_every_folder_of_evidence_says_question_command_answer_and_date():
+    folders = [path for path in (ROOT / "evidence").iterdir() if list(path.glob("*.*"))]
+    for folder in folders:
+        lines = (folder / "README.md").read_text(encoding="utf-8").splitlines()
+        begins = [line.partition(":")[0] for line in lines]
+        assert begins == ["* Question", "* Command", "* Answer", "* Date"], folder
+
+
 def test_scripts_of_the_gallery_are_thirteen_with_a_title():
     scripts = sorted((ROOT / "docs" / "gallery").glob("*.py"))
     assert len(scripts) == 13
@@ -199,15 +207,13 @@ def test_every_key_of_a_case_is_documented():
 
 
 def test_every_column_is_documented():
-    from restitution.results.schema import (
-        COLUMNS,
-        OBLIQUE_COLUMNS,
-        OBLIQUE_SPREAD_COLUMNS,
-        SPREAD_COLUMNS,
-    )
+    from restitution.curve.oblique import MeanObliquePoint
+    from restitution.curve.periodic import PeriodicPoint
+    from restitution.curve.point import MeanPoint
 
     text = (ROOT / "docs" / "results.md").read_text()
-    for column in (*COLUMNS, *SPREAD_COLUMNS, *OBLIQUE_COLUMNS, *OBLIQUE_SPREAD_COLUMNS):
+    kinds = MeanPoint, MeanObliquePoint, PeriodicPoint
+    for column in (header for kind in kinds for header in kind.columns()):
         assert f"`{column}`" in text
 
 

@@ -38,6 +38,7 @@ ROOMS = (
     "__main__",
 )
 PHYSICS = {"theory", "numerics", "surfaces", "contact"}
+FINDINGS = "contact.checks.findings"  # what the command line says of a contact
 CASE_KEY = re.compile(r"\b(roughness|interface|indentation|load|unloading|sweep)\.\w|(^| )--[a-z]")
 SOLVERS = {
     "solve",
@@ -63,9 +64,20 @@ MODULES = {name_of(path): path.read_text(encoding="utf-8") for path in PACKAGE.r
 del MODULES["__init__"]  # the names for Python users, from any room
 
 
+def for_types(tree):
+    """What is imported for type checkers alone, as a model is by the contact that it is part of."""
+    blocks = (node for node in ast.walk(tree) if isinstance(node, ast.If))
+    only = (block for block in blocks if ast.unparse(block.test) == "TYPE_CHECKING")
+    return {id(node) for block in only for node in ast.walk(block)}
+
+
 def imported(module, source):
     """Module and name of every import from this package, those in functions included."""
-    for node in ast.walk(ast.parse(source)):
+    tree = ast.parse(source)
+    left_out = for_types(tree) if room(module) == "contact" else set()
+    for node in ast.walk(tree):
+        if id(node) in left_out:
+            continue
         if isinstance(node, ast.Import):
             yield from ((alias.name, "") for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -111,6 +123,49 @@ def test_imports_point_up_the_list_only():
     assert wrong_way(graph(MODULES)) == []
 
 
+MODELS = ("plasticity", "jkr", "cohesive")
+MODEL_NAMES = re.compile(
+    r"Elastic|ConstantBound|ExpandingCavity|Truncated|JKRLimit|Cohesive|CrackClosure|PohrtPopov"
+    r"|isinstance\(.*(State|Plasticity|Adhesion)\)|\.(adhesive|grows|bounds_solve|exact_work|"
+    r"for_periodic|follows_path|by_energy|in_equilibrium|attracts|label)\b"
+    r"|\.adhesion is (not )?None|\.adhesion or\b"
+)
+
+
+def branches(source):
+    """Conditions that ask for the model of a contact, or for a property of it."""
+    kinds = ast.If, ast.IfExp, ast.While
+    tests = [node.test for node in ast.walk(ast.parse(source)) if isinstance(node, kinds)]
+    tests += [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.BoolOp)]
+    return [text for text in map(ast.unparse, tests) if MODEL_NAMES.search(text)]
+
+
+def core():
+    """The modules of contacts outside the rooms of the models, by name."""
+    return {
+        name: source
+        for name, source in MODULES.items()
+        if room(name) == "contact" and name.split(".")[1] not in MODELS
+    }
+
+
+def test_the_core_of_contacts_seldom_asks_for_the_model():
+    count = {name: len(branches(source)) for name, source in core().items()}
+    assert sum(count.values()) <= 15, count
+    assert branches("if contact.adhesion is None: pass\nx = 1 if a.grows else 2") != []
+
+
+def test_the_core_of_contacts_imports_no_model():
+    """`Contact` alone knows the default, bodies that do not yield."""
+    found = {
+        (name, of)
+        for name, source in core().items()
+        for of, _ in imported(name, source)
+        if of.split(".")[1:2] == ["contact"] and set(of.split(".")[2:3]) & set(MODELS)
+    }
+    assert found == {("contact.contact", "restitution.contact.plasticity.bound")}
+
+
 def test_no_modules_import_each_other_in_a_circle():
     TopologicalSorter(graph(MODULES)).prepare()
 
@@ -145,7 +200,7 @@ def test_messages_of_physics_name_arguments_not_keys_of_a_case_or_options():
     found = [
         f"{module}: {text}"
         for module, source in MODULES.items()
-        if room(module) in PHYSICS
+        if room(module) in PHYSICS and module != FINDINGS
         for text in texts(source)
         if CASE_KEY.search(text)
     ]

@@ -1,4 +1,4 @@
-"""Cases of smooth bodies, and the theories beside them, for tests of `laws.theories`."""
+"""Cases of smooth bodies, and the theories beside them, for tests of `compare.theories`."""
 
 import numpy as np
 

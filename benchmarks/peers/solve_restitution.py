@@ -5,7 +5,17 @@ from importlib.metadata import version
 
 from worker import serve
 
-from restitution import Body, Contact, Grid, Pair, Surface, operator_cache, solve, solve_at_pressure
+from restitution import (
+    Body,
+    ConstantBound,
+    Contact,
+    Grid,
+    Pair,
+    Surface,
+    operator_cache,
+    solve,
+    solve_at_pressure,
+)
 
 
 def prepare(problem):
@@ -15,7 +25,10 @@ def prepare(problem):
     sphere = (grid.x[:, None] ** 2 + grid.y**2) / (2 * problem.radius)
     body = Body(2 * float(problem.radius), 2 * float(problem.contact_modulus), 0.0)
     surface = Surface(sphere - problem.gap, grid)
-    model = {"yield_pressure": float(problem.limit), "periodic": bool(problem.periodic)}
+    model = {
+        "plasticity": ConstantBound(float(problem.limit)),
+        "periodic": bool(problem.periodic),
+    }
     return Pair(body, body), surface, model, float(problem.indentation), float(problem.force)
 
 

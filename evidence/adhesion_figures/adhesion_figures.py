@@ -10,7 +10,7 @@ import numpy as np
 
 from evidence.shared import PAIR, write_image, write_table
 from restitution import Contact, Grid, collide, generate_surface, loading_path, smooth
-from restitution.contact.checks.resolution import ADHESIVE_NODES, adhesive_nodes
+from restitution.contact.checks.resolution import resolves_adhesion
 from restitution.contact.jkr.limit import JKRLimit
 from restitution.contact.plasticity.bound import ConstantBound
 from restitution.plots.cor import cor_axis
@@ -70,7 +70,7 @@ def rows_of(surface, contact, depths):
             "indentation_m": state.indentation,
             "restitution": collision.restitution,
             "restitution_error": collision.restitution_error,
-            "adhesion_resolved": adhesive_nodes(state) >= ADHESIVE_NODES,
+            "adhesion_resolved": resolves_adhesion(state),
             "impact_velocity_m_per_s": collision.impact_velocity,
         }
 

@@ -15,11 +15,22 @@ from pathlib import Path
 import numpy as np
 
 from evidence.shared import write_image, write_table
-from restitution import Body, Contact, Grid, Pair, Surface, collide, generate_surface, smooth, solve
-from restitution.contact.checks.model_error import hysteresis_ratio, model_error
-from restitution.contact.cohesive.equilibrium import COMPANION
-from restitution.contact.jkr.limit import JKRLimit
-from restitution.contact.jkr.separation import separation_of
+from restitution import (
+    Body,
+    Cohesive,
+    Contact,
+    Grid,
+    Pair,
+    Surface,
+    collide,
+    generate_surface,
+    smooth,
+    solve,
+)
+from restitution.case.models import plasticity_of
+from restitution.contact.checks.model_error import model_error
+from restitution.contact.jkr.limit import JKRLimit, hysteresis_ratio
+from restitution.contact.models import COMPANION
 from restitution.contact.path import unloading_path
 from restitution.contact.plasticity.bound import ConstantBound
 from restitution.contact.prescribed.velocity import solve_at_velocity
@@ -52,8 +63,7 @@ def sphere(tabor, depth, cells=0.3, offset=(0.31, 0.17), **options):
     shifted = (x - offset[0] * h) ** 2 + (y - offset[1] * h) ** 2
     height = (x * x + y * y - shifted) / (2 * pair.radius)
     surface = Surface(height, grid, {"source": "shifted apex", COMPANION: 1.0})  # coarse, too
-    options = {"work_of_adhesion": W, "adhesion": "cohesive", **options}
-    return Contact(pair, surface, equilibrium_separation=Z0, **options)
+    return Contact(pair, surface, **{"adhesion": Cohesive(W, Z0), **options})
 
 
 def cycle(contact, indentation):
@@ -61,11 +71,11 @@ def cycle(contact, indentation):
     state = solve(contact, indentation)
     path = list(unloading_path(state))
     jkr = JKR(contact.pair.radius, contact.pair.contact_modulus, contact.adhesion.work_of_adhesion)
-    if contact.cohesive:
+    if isinstance(contact.adhesion, Cohesive):
         lost = path[-1].adhesive_loss
     else:
-        lost = state.loading_work - separation_of(path).unloading_work
-    pull_off = separation_of(path).pull_off_force
+        lost = state.loading_work - contact.adhesion.separation_of(path).unloading_work
+    pull_off = contact.adhesion.separation_of(path).pull_off_force
     return lost / float(jkr.hysteresis_loss), pull_off / float(jkr.pull_off_force)
 
 
@@ -242,8 +252,8 @@ def rough():
             )
             for depth in (2e-9, 6e-9):
                 row = {"material": material, "rms_nm": 1e9 * rms, "indentation_nm": 1e9 * depth}
-                for mode in ("cohesive", "jkr"):
-                    contact = replace(base, adhesion=mode)
+                for mode, adhesion in (("cohesive", Cohesive(W)), ("jkr", JKRLimit(W))):
+                    contact = replace(base, adhesion=adhesion)
                     try:
                         state = solve(contact, depth)
                         collision = collide(state)
@@ -271,7 +281,8 @@ def balance():
     rows = []
     for number in range(200):
         tabor, depth = float(rng.uniform(0.2, 1.1)), float(rng.uniform(0.5, 3.0))
-        contact = sphere(tabor, depth, yield_pressure=float(rng.choice([np.inf, 1e9, 2e8])))
+        bound = plasticity_of(yield_pressure=float(rng.choice([np.inf, 1e9, 2e8])))
+        contact = sphere(tabor, depth, plasticity=bound)
         grid = contact.grid
         height = np.zeros(grid.nodes)
         for _ in range(8):
@@ -283,7 +294,7 @@ def balance():
         contact = replace(contact, surface=surface)
         state = solve(contact, depth * Z0)
         path = list(unloading_path(state))
-        found = separation_of(path)
+        found = contact.adhesion.separation_of(path)
         depths, forces = ([getattr(s, key) for s in path] for key in ("indentation", "force"))
         by_force = -integrate_curve(depths, forces) + path[-1].potential_energy
         rows.append(

@@ -13,13 +13,25 @@ from __future__ import annotations
 import csv
 from collections import defaultdict
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 
-from restitution.contact.checks.model_error import relative_model_error
+from restitution.case.models import plasticity_of
+from restitution.contact.bodies import Body, Pair
 
 MODELS = Path(__file__).parents[1] / "plasticity_models" / "models.csv"
 FEWEST = 4  # smallest number of depths of a fit
+
+
+def largest_difference(model, restitution, steepness):
+    """Relative model error of a COR, at the steepness E* S/Y of the asperities (rms slope S)."""
+    pair = Pair(Body(1e-3, 2e11, 0.3), Body(1e-3, 2e11, 0.3))
+    strength = 1e-3 * pair.contact_modulus
+    growing = model == "expanding-cavity"
+    yields = {"yield_strength": strength} if growing else {"yield_pressure": 2.8 * strength}
+    contact = SimpleNamespace(pair=pair, slope=steepness * strength / pair.contact_modulus)
+    return plasticity_of(model, **yields).difference(contact, restitution)
 
 
 def shares(model: str) -> list[float]:
@@ -41,7 +53,7 @@ def shares(model: str) -> list[float]:
         work, true, e, steepness = np.array(sorted(curve)).T
         if e.size < FEWEST:
             continue
-        error = e * [relative_model_error(model, *pair) for pair in zip(e, steepness, strict=True)]
+        error = e * [largest_difference(model, *pair) for pair in zip(e, steepness, strict=True)]
         slope = -5 * np.gradient(e, np.log(work))
         for first in range(e.size):
             for last in range(first + FEWEST, e.size + 1):

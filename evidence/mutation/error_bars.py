@@ -19,15 +19,19 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parents[2]
 TESTS = {
-    "contact/adhesive_work.py": "contact/test_work_error.py contact/test_balance.py "
+    "contact/jkr/loading_work.py": "contact/test_work_error.py contact/test_balance.py "
     "contact/test_loading.py",
-    "contact/loading.py": "contact/test_work_error.py contact/test_loading.py "
-    "contact/test_cavity.py contact/test_separation.py verification/test_adhesive_restitution.py",
-    "contact/plastic_work.py": "contact/test_work_error.py contact/test_cavity.py",
-    "contact/separation.py": "contact/test_separation.py contact/test_cohesive.py "
+    "contact/jkr/limit.py": "contact/test_work_error.py contact/test_loading.py "
+    "contact/test_model_error.py contact/test_separation.py "
+    "verification/test_adhesive_restitution.py",
+    "contact/plasticity/cavity.py": "contact/test_work_error.py contact/test_cavity.py "
+    "contact/test_model_error.py",
+    "contact/plasticity/truncated.py": "contact/test_work_error.py contact/test_loading.py",
+    "contact/plasticity/bound.py": "contact/test_model_error.py",
+    "contact/jkr/separation.py": "contact/test_separation.py contact/test_cohesive.py "
     "contact/test_energy_account.py test_collision.py verification/test_adhesive_restitution.py",
-    "contact/cohesive_path.py": "contact/test_cohesive.py contact/test_periodic_cohesive.py",
-    "contact/model_error.py": "contact/test_model_error.py",
+    "contact/cohesive/law.py": "contact/test_cohesive.py",
+    "contact/cohesive/path.py": "contact/test_cohesive.py contact/test_periodic_cohesive.py",
     "collision.py": "test_collision.py contact/test_energy_account.py contact/test_separation.py "
     "verification/test_adhesive_restitution.py",
     "numerics/quadrature.py": "numerics/test_quadrature.py",
@@ -36,13 +40,13 @@ TESTS = {
     "runs/ensemble.py": "runs/test_ensemble.py",
     "runs/oblique.py": "runs/test_oblique_impacts.py",
     "results/compare.py": "cli/test_compare.py",
-    "results/total_error.py": "results/test_total_error.py runs/test_error_budget.py",
+    "curve/point.py": "curve/test_total_error.py runs/test_error_budget.py",
     "fit/uncertainty.py": "fit/test_uncertainty.py fit/test_fit.py",
     "mixtures/scaling.py": "mixtures/test_mixture.py",
-    "laws/law.py": "laws/test_interpolation.py laws/test_law.py",
+    "laws/law.py": "curve/test_interpolation.py laws/test_law.py",
     "impacts/oblique.py": "impacts/test_oblique.py",
     "impacts/tangential_error.py": "impacts/test_tangential_error.py impacts/test_oblique.py",
-    "laws/interpolation.py": "laws/test_interpolation.py",
+    "curve/interpolation.py": "curve/test_interpolation.py",
     "laws/compact_fit.py": "laws/test_compact_fit.py",
 }
 

@@ -16,7 +16,6 @@ from pathlib import Path
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from restitution.contact.perimeter import corrected_area
 
 from restitution import Body, Contact, Grid, Pair, Surface, generate_surface, solve_at_pressure
 from restitution.theory import Persson
@@ -67,7 +66,7 @@ def compute(name: str) -> None:
             name,
             pressure,
             round(state.relative_area, 5),
-            round(corrected_area(state) / PERIOD**2, 5),
+            round(state.corrected_area / PERIOD**2, 5),
             round(state.mean_gap / surface.height.std(), 4),
             state.convolutions,
         )
@@ -91,7 +90,7 @@ def egg_box(n: int, share: float) -> float:
     along = np.cos(2 * np.pi * grid.x / PERIOD)
     contact = Contact(FLAT, Surface(amplitude * np.outer(along, along), grid), periodic=True)
     full = math.sqrt(2) * math.pi * E_STAR * amplitude / PERIOD
-    return corrected_area(solve_at_pressure(contact, share * full)) / PERIOD**2
+    return solve_at_pressure(contact, share * full).corrected_area / PERIOD**2
 
 
 def convergence() -> None:

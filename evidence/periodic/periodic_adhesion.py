@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 
 import restitution as rs
-from restitution.contact.cohesive.equilibrium import COMPANION
 from restitution.contact.jkr.separation import separate, separation_of
+from restitution.contact.models import COMPANION
 from restitution.theory import LennardJones
 
 WORK = 0.05  # J/m²

@@ -45,10 +45,12 @@ def extrapolations() -> dict[tuple[str, float], dict[str, str]]:
 def material(model: dict, name: str) -> dict:
     """Arguments of `Contact` for one of our models of the material of a reference."""
     Y, H = model["yield_strength_Pa"], model["hardening_modulus_Pa"]
+    from restitution.case.models import plasticity_of
+
     if name != "expanding-cavity":
-        return {"yield_pressure": 2.8 * Y, "plasticity": name}
+        return {"plasticity": plasticity_of(name, 2.8 * Y)}
     E = model["youngs_modulus_Pa"]
-    return {"yield_strength": Y, "tangent_modulus": H * E / (H + E)}
+    return {"plasticity": plasticity_of(name, yield_strength=Y, tangent_modulus=H * E / (H + E))}
 
 
 def pair_of(model: dict):

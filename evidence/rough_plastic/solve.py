@@ -8,8 +8,6 @@ Units inside: micrometre, MPa, hence micronewton; files are in SI units.
 
 import os
 
-from restitution.case.models import plasticity_of
-
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 import argparse
 import json
@@ -163,7 +161,12 @@ def main():
     solver = Contact(
         z,
         length,
-        plasticity=plasticity_of(a.layers, a.depth),
+        a.depth,
+        a.layers,
+        modulus,
+        poisson,
+        a.yield_strength,
+        radius,
         elastic=a.elastic,
         images=not a.no_images,
         tolerance=a.tolerance,

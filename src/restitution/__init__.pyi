@@ -14,12 +14,12 @@ from .contact.cohesive.law import Cohesive as Cohesive
 from .contact.cohesive.law import CohesiveLaw as CohesiveLaw
 from .contact.contact import Contact as Contact
 from .contact.contact import smooth as smooth
+from .contact.jkr.approach import AdhesiveApproach as AdhesiveApproach
+from .contact.jkr.approach import HertzianApproach as HertzianApproach
+from .contact.jkr.approach import PullIncrements as PullIncrements
 from .contact.jkr.detachment import CrackClosure as CrackClosure
 from .contact.jkr.detachment import PohrtPopov as PohrtPopov
-from .contact.jkr.limit import AdhesiveApproach as AdhesiveApproach
-from .contact.jkr.limit import HertzianApproach as HertzianApproach
 from .contact.jkr.limit import JKRLimit as JKRLimit
-from .contact.jkr.limit import PullIncrements as PullIncrements
 from .contact.loading import solve as solve
 from .contact.loading import step as step
 from .contact.models import Plasticity as Plasticity

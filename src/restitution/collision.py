@@ -152,10 +152,11 @@ def collide(
         return elastic
     if method == "energy-estimate":
         owed = adhesion.attraction_energy(state)
+        surface_energy = adhesion.work_of_adhesion * state.contact_area
         return replace(
             elastic,
             unloading_work=state.stored_energy - owed,
-            unloading_work_error=adhesion.work_of_adhesion * state.contact_area,
+            unloading_work_error=surface_energy,
             adhesive_loss=owed,
             pull_off_force=math.nan,
             separation_indentation=math.nan,

@@ -137,3 +137,13 @@ def test_a_case_as_a_text_fills_the_form(page, live_case):
     page.get_by_role("button", name="Use this text").click()
     expect(page.locator("#field-first-radius")).to_have_value("120 um")
     computed(page)
+
+
+def test_a_field_is_hidden_while_another_choice_leaves_it_without_effect(page):
+    computed(page)
+    page.locator("#groups summary", has_text="More").nth(1).click()
+    page.locator("#field-interface-approach").select_option("hertzian")
+    page.locator("#field-interface-adhesion").select_option("cohesive")
+    expect(page.locator("#field-interface-approach")).to_have_count(0)
+    page.locator("#field-interface-adhesion").select_option("")
+    expect(page.locator("#field-interface-approach")).to_have_value("hertzian")

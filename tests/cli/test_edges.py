@@ -145,8 +145,7 @@ def test_a_restitution_in_time_has_its_error(cli, case_text, tmp_path, monkeypat
     assert cli("run", tmp_path / "case.toml", "-o", tmp_path / "out")[0] == 0
     real = time_integration.collide_in_time
     monkeypatch.setattr(
-        time_integration,
-        "collide_in_time",
+        "restitution.cli.simulate.collide_in_time",
         lambda *arguments: dataclasses.replace(real(*arguments), restitution=1.00012),
     )
     status, said, _ = cli("simulate", tmp_path / "out")

@@ -97,7 +97,7 @@ def test_a_law_with_another_interface_says_so(points, law):
     assert "another interface" not in by_name(case_of(), V, points)["computed"].holds
     other = law(yield_pressure=2e9, work_of_adhesion=0.3)
     said = by_name(case_of(), V, other)["computed"].holds
-    assert "p_y = 2000 MPa, w = 0.3 J/m^2" in said
+    assert "p_y = 2 GPa, w = 0.3 J/m^2" in said
 
 
 @pytest.mark.parametrize("p_y", [None, 2e9])

@@ -16,6 +16,7 @@ class SoftOutside(rs.Plasticity):
     radius: float
 
     label = "soft-outside"
+    strengths = ("hard", "soft")
 
     @property
     def hardness(self):

@@ -11,8 +11,9 @@ from restitution import Body, Contact, Grid, Pair, collide, generate_surface, sm
 from restitution.case.models import adhesion_of
 from restitution.contact.cohesive import path as cohesive_path
 from restitution.contact.jkr import separation
+from restitution.contact.jkr.approach import HertzianApproach, PullIncrements
 from restitution.contact.jkr.detachment import CrackClosure
-from restitution.contact.jkr.limit import HertzianApproach, JKRLimit, PullIncrements
+from restitution.contact.jkr.limit import JKRLimit
 from restitution.contact.plasticity.bound import ConstantBound
 from restitution.errors import NotConvergedError
 from tolerance import approx

@@ -128,7 +128,7 @@ def test_a_stored_curve_serves_depths_that_differ_by_rounding():
         _, _, blended = law.branch(deepest)
         assert not blended
     for deepest in (1e-7 * (1 - 2e-5), 4e-7 * (1 + 2e-5)):
-        with pytest.raises(DomainError, match="stored only from 100 to 400 nm"):
+        with pytest.raises(DomainError, match="stored only from 100 nm to 400 nm"):
             law.branch(deepest)
 
 

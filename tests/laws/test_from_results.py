@@ -107,10 +107,10 @@ def test_without_a_total_error_the_known_parts_are_the_error(run):
 @pytest.mark.parametrize(("e", "largest"), [(0.8, 0.8), (0.3, 0.7)])
 def test_an_error_of_which_a_part_is_not_known_may_be_anything(e, largest):
     one = point(restitution=e, restitution_error=0.03, discretisation_error=0.04, total_error=0.2)
-    assert from_results._error(one, asked=True) == 0.2
+    assert from_results._error(one, wanted=True) == 0.2
     unknown = replace(one, total_error=math.nan)
-    assert from_results._error(unknown, asked=True) == largest
-    assert from_results._error(unknown, asked=False) == approx(0.05)
+    assert from_results._error(unknown, wanted=True) == largest
+    assert from_results._error(unknown, wanted=False) == approx(0.05)
 
 
 def test_a_law_says_that_the_total_error_is_unknown_after_an_interruption(tmp_path):

@@ -19,8 +19,9 @@ from restitution import (
 )
 from restitution.case.models import adhesion_of
 from restitution.contact.checks.resolution import adhesive_spacing, resolves_adhesion
+from restitution.contact.jkr.approach import HertzianApproach
 from restitution.contact.jkr.detachment import tension_limit
-from restitution.contact.jkr.limit import HertzianApproach, JKRLimit
+from restitution.contact.jkr.limit import JKRLimit
 from restitution.contact.jkr.separation import separate, separation_of
 from restitution.contact.plasticity.bound import ConstantBound
 from restitution.theory import JKR

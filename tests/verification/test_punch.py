@@ -7,7 +7,8 @@ import pytest
 
 from restitution import Body, Contact, Grid, Pair, Surface, smooth, solve
 from restitution.case.models import adhesion_of
-from restitution.contact.jkr.limit import HertzianApproach, JKRLimit
+from restitution.contact.jkr.approach import HertzianApproach
+from restitution.contact.jkr.limit import JKRLimit
 from restitution.contact.jkr.separation import separate, separation_of
 from restitution.theory import JKR, Kendall
 from tolerance import approx

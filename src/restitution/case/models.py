@@ -6,13 +6,9 @@ import math
 from typing import Literal
 
 from restitution.contact.cohesive.law import Cohesive
+from restitution.contact.jkr.approach import AdhesiveApproach, HertzianApproach, PullIncrements
 from restitution.contact.jkr.detachment import CrackClosure, PohrtPopov
-from restitution.contact.jkr.limit import (
-    AdhesiveApproach,
-    HertzianApproach,
-    JKRLimit,
-    PullIncrements,
-)
+from restitution.contact.jkr.limit import JKRLimit
 from restitution.contact.models import EQUILIBRIUM_SEPARATION
 from restitution.contact.models import Adhesion as AdhesionModel
 from restitution.contact.models import Plasticity as PlasticityModel

@@ -30,7 +30,7 @@ from restitution.plots.static import write_figure
 from restitution.reproduce.report import write_reproduction
 from restitution.reproduce.studies import NAMES, Size, bundled
 from restitution.results.writer import make_folder
-from restitution.sweeps.executors import chosen_workers, local_workers
+from restitution.sweeps import executors
 from restitution.sweeps.scheduler import Tally, run_study
 from restitution.sweeps.study_folder import StudyFolder
 from restitution.sweeps.sweep import read_study
@@ -45,7 +45,7 @@ def study(
     resume: bool,
     retry_failed: bool,
 ) -> None:
-    where = chosen_workers(workers, scheduler)
+    where = executors.chosen_workers(workers, scheduler)
     read = read_study(study)
     folder = StudyFolder(out, read, resume=resume)
     again = command("study", study, "-o", out, "--resume")
@@ -83,7 +83,7 @@ def mixture(
     resume: bool,
     figures: FigureFormat,
 ) -> None:
-    where = chosen_workers(workers, scheduler)
+    where = executors.chosen_workers(workers, scheduler)
     read = read_mixture(mixture)
     folder = open_mixture_folder(out, read, resume=resume)
     again = command("mixture", mixture, "-o", out, "--resume")
@@ -127,7 +127,7 @@ def reproduce(out: Path, *, quick: bool, refined: bool, workers: int | None, res
     studies = {name: bundled(name, size) for name in NAMES}
     total = sum(len(study.cases) for study in studies.values())
     done = 0
-    with cases_progress(total, out, again) as bar, local_workers(workers) as there:
+    with cases_progress(total, out, again) as bar, executors.local_workers(workers) as there:
         task = bar.add_task("starting", total=total)
         for name, study in studies.items():
 

@@ -91,8 +91,6 @@ def _list(shown: dict[str, Material], *, names: bool = True) -> Table:
 
 
 def _values(material: Material) -> Table:
-    from restitution.cli.console import table_of_numbers
-
     table = table_of_numbers(
         Column("quantity", no_wrap=True, overflow="fold"),
         Column("value", justify="right", no_wrap=True, overflow="fold"),

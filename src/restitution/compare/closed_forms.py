@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.case.case import Case
+from restitution.display import quantity
 from restitution.errors import CaseError
 from restitution.theory import (
     JKR,
@@ -145,9 +146,9 @@ class Bodies:
     def convention(self) -> str:
         """`strength` and its origin, in words."""
         if self.strengths is None:
-            return f"Y = p_y/{STRENGTHS:g} = {1e-6 * self.strength:.4g} MPa"
+            return f"Y = p_y/{STRENGTHS:g} = {quantity(self.strength, 'Pa')}"
         softer = self.labels[self.strengths.index(self.strength)]
-        return f"Y = {1e-6 * self.strength:.4g} MPa, the yield_strength of {softer}"
+        return f"Y = {quantity(self.strength, 'Pa')}, the yield_strength of {softer}"
 
     @property
     def yielding_wall(self) -> bool | None:

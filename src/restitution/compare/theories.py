@@ -11,6 +11,7 @@ import numpy as np
 
 from restitution.case.case import Case
 from restitution.compare.closed_forms import FORMS, SOURCES, Bodies, speed, within
+from restitution.display import quantity
 from restitution.errors import CaseError
 from restitution.laws.law import LOSS, Array, FittedLaw, Law
 from restitution.results.writer import make_folder, write_table
@@ -219,7 +220,7 @@ def _other_interface(bodies: Bodies, law: Law) -> str:
     differing = []
     p_y = math.inf if law.yield_pressure is None else law.yield_pressure
     if not math.isclose(p_y, bodies.p_y, rel_tol=_SAME):
-        differing.append("elastic" if math.isinf(p_y) else f"p_y = {1e-6 * p_y:.4g} MPa")
+        differing.append("elastic" if math.isinf(p_y) else f"p_y = {quantity(p_y, 'Pa')}")
     if not math.isclose(law.work_of_adhesion, bodies.w, rel_tol=_SAME):
         differing.append(f"w = {law.work_of_adhesion:.4g} J/m^2")
     return f"; computed for an interface that differs from the case: {', '.join(differing)}" * bool(

@@ -46,6 +46,7 @@ class Plasticity(ABC):
         bounds_solve: Whether the pressure is bounded in the solve; otherwise `finish` truncates the
             elastic pressure (bool).
         for_periodic: Whether the model is defined for periodic contacts (bool).
+        strengths: Names of the fields that are strengths of the material.
     """
 
     label: ClassVar[str]
@@ -53,6 +54,12 @@ class Plasticity(ABC):
     grows: ClassVar[bool] = False
     bounds_solve: ClassVar[bool] = True
     for_periodic: ClassVar[bool] = True
+    strengths: ClassVar[tuple[str, ...]] = ()
+
+    def scaled(self, factor: float) -> Plasticity:
+        """Copy with all strengths multiplied by `factor`."""
+        changed = {name: factor * getattr(self, name) for name in self.strengths}
+        return replace(self, **changed)  # type: ignore[type-var]
 
     @property
     @abstractmethod
@@ -78,17 +85,6 @@ class Plasticity(ABC):
     def onset_pressure(self, pair: Pair) -> float:
         """Pressure (Pa) from which on the model differs from real bodies that yield."""
         return _ONSET * self.hardness
-
-    def weaker(self, factor: float) -> Plasticity:
-        """The model with its yield limit multiplied by `factor`; itself without such a limit.
-
-        Args:
-            factor: Factor (dimensionless).
-
-        Returns:
-            The model.
-        """
-        return self
 
     def bound(
         self, contact: Contact, indentation: float, residual: float

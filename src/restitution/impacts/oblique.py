@@ -44,18 +44,15 @@ class ObliqueCollision:
         velocity: Relative velocity of the centres before the impact (m/s).
         angle: Angle between this velocity and the normal (rad).
         friction: Coefficient of friction µ (dimensionless).
-        normal_restitution: Ratio of the normal velocities after and before the impact
-            (dimensionless).
-        tangential_restitution: Ratio of the tangential velocities of the centres after and before
-            the impact (dimensionless); NaN for a head-on impact.
+        normal_restitution: Ratio of the normal velocities after and before (dimensionless).
+        tangential_restitution: Ratio of the tangential velocities of the centres
+            (dimensionless); NaN for a head-on impact.
         rebound_angle: Angle of rebound of the centres from the normal (rad).
         spins: Angular velocities of the two bodies after the impact (rad/s); 0 for a wall.
-        tangential_restitution_error: Error of `tangential_restitution` due to the model of the
-            tangential force (dimensionless); NaN for a head-on impact. The error of the normal
-            forces is not included.
-        rebound_angle_error: Error of `rebound_angle` due to the model of the tangential force
-            (rad).
-        spin_errors: Errors of `spins` due to the model of the tangential force (rad/s).
+        tangential_restitution_error: Error due to the model of the tangential force
+            (dimensionless), as the next two, without that of the normal forces.
+        rebound_angle_error: Error of `rebound_angle` (rad).
+        spin_errors: Errors of `spins` (rad/s).
         friction_loss: Energy lost to friction (J).
         normal_loss: Energy lost in the normal contact (J).
         sliding: Whether the whole contact slides from the beginning to the end.
@@ -63,8 +60,7 @@ class ObliqueCollision:
         normal_force: Normal force (N).
         tangential_force: Tangential force (N).
         slip_velocity: Relative tangential velocity of the surfaces at the contact (m/s).
-        sticking: Normal load of the sticking springs, divided by the normal load of all springs
-            (dimensionless).
+        sticking: Share of the normal load on sticking springs (dimensionless).
     """
 
     velocity: float
@@ -109,24 +105,11 @@ def collide_obliquely(
     friction: float,
     spins: tuple[float, float] = (0.0, 0.0),
 ) -> ObliqueCollision:
-    """Simulate an oblique impact of the two particles of `law`.
+    """Simulate an oblique impact of the two particles of `law`, without adhesion.
 
-    Args:
-        law: Stored normal force of the pair (`stored_force`), without adhesion.
-        velocity: Relative velocity of the centres before the impact (m/s), positive.
-        angle: Angle between this velocity and the normal (rad), at least 0 and below π/2.
-        friction: Coefficient of friction µ (dimensionless), not negative.
-        spins: Angular velocities of the two bodies before the impact (rad/s), positive in the
-            direction in which friction accelerates the rotation of a body without spin.
-
-    Returns:
-        The collision.
-
-    Raises:
-        CaseError: An argument lies outside its range, or the spin of a wall is not 0.
-        DomainError: The normal velocity is above the computed velocities, or the depth of the
-            impact is outside the depths of the stored unloading curves.
-        NotConvergedError: The integration of the normal motion failed.
+    `velocity` is the relative velocity of the centres (m/s), `angle` that from the normal (rad), at
+    least 0 and below π/2, and `spins` (rad/s) are positive in the direction in which friction
+    accelerates a body without spin. Raises `CaseError`, and the errors of `collide_in_time`.
     """
     if not 0 <= angle < math.pi / 2:
         raise CaseError(
@@ -185,18 +168,9 @@ def spin_per_impulse(pair: Pair) -> tuple[float, float]:
 
 
 def oblique_force(run: RunResults, key: str = "angle") -> StoredForce:
-    """Read the force law of a run for oblique impacts.
+    """The force law of a run for oblique impacts; `key` names what asks for them, in messages.
 
-    Args:
-        run: Stored results of one surface.
-        key: Name of the option or argument that requests oblique impacts, for error messages.
-
-    Returns:
-        The force law of `run`.
-
-    Raises:
-        CaseError: The pair has adhesion, or no mass.
-        OutputError: The run has no unloading curves, or a file is damaged.
+    Raises `CaseError` with adhesion or without mass, and `OutputError` without unloading curves.
     """
     if run.case.interface.adhesive_energy > 0:
         raise CaseError(f"{key}: oblique impacts are computed only for pairs without adhesion")
@@ -219,19 +193,10 @@ def course(collision: ObliqueCollision) -> list[dict[str, float]]:
 
 
 def full_slip_angle(friction: float, restitution: float, modulus_ratio: float) -> float:
-    """The smallest angle of impact at which the whole contact slides, for bodies without spin.
+    """The smallest angle of impact (rad) in full slip, for bodies without spin.
 
-    Args:
-        friction: Coefficient of friction µ (dimensionless).
-        restitution: Normal restitution e (dimensionless).
-        modulus_ratio: Ratio G*/E* of tangential to contact modulus (dimensionless).
-
-    Returns:
-        The angle from the normal (rad).
-
-    Source:
-        Maw, Barber and Fawcett (1976, Wear 38, 101–114) for e = 1: ψ₁ ≥ 4χ − 1. The same derivation
-        holds for e < 1, because springs unload with the stiffness E*.
+    `modulus_ratio` is G*/E*. Maw, Barber and Fawcett (1976, Wear 38, 101–114) for e = 1: ψ₁ ≥ 4χ −
+    1; the same derivation holds for e < 1, because springs unload with the stiffness E*.
     """
     least = 3.5 * (1 + restitution) - restitution / modulus_ratio
     # If ψ₁ = (G*/E*) tan θ/µ is below 1, the contact sticks at first (Maw, Barber and Fawcett). So
@@ -240,20 +205,7 @@ def full_slip_angle(friction: float, restitution: float, modulus_ratio: float) -
 
 
 def full_slip_restitution(friction: float, restitution: float, angle: float) -> float:
-    """Tangential restitution of the particle centres with full slip: 1 − µ (1 + e)/tan θ.
-
-    Args:
-        friction: Coefficient of friction µ (dimensionless).
-        restitution: Normal restitution e (dimensionless).
-        angle: Angle of impact from the normal (rad), above 0.
-
-    Returns:
-        Ratio of the relative tangential velocities of the particle centres after and before the
-        impact (dimensionless).
-
-    Source:
-        The impulse of a sliding contact: µ times the normal impulse, (1 + e) m* V_n.
-    """
+    """Tangential restitution of the centres in full slip, from the impulse µ (1 + e) m* V_n."""
     return 1 - friction * (1 + restitution) / math.tan(angle)
 
 
@@ -262,8 +214,8 @@ def _slide(
 ) -> tuple[dict[str, Array], float, float, float]:
     """Integrate the tangential motion, beginning with the slip velocity `slip` (m/s).
 
-    `error` is the relative error of the tangential stiffness. Returns the time series of
-    `ObliqueCollision`, the tangential impulse (N s), its error (N s) and the friction loss (J).
+    Returns the time series of `ObliqueCollision`, the tangential impulse (N s), its error (N s) due
+    to the relative `error` of the stiffness, and the friction loss (J).
     """
     from scipy.interpolate import CubicHermiteSpline
 

@@ -23,6 +23,7 @@ import xarray as xr
 from restitution.contact.bodies import Pair
 from restitution.curve.columns import Array
 from restitution.curve.curve import UnloadingCurve
+from restitution.display import quantity
 from restitution.errors import (
     CaseError,
     DomainError,
@@ -111,9 +112,9 @@ class StoredForce:
         depths = self.unloading_from
         if not depths[0] * (1 - _SAME) <= deepest <= depths[-1] * (1 + _SAME):
             raise DomainError(
-                f"the impact reaches a depth of {1e9 * deepest:.4g} nm, but unloading curves are "
-                f"stored only from {1e9 * depths[0]:.4g} to {1e9 * depths[-1]:.4g} nm and are not "
-                "extrapolated; give a larger unloading.curves, or choose another velocity"
+                f"the impact reaches a depth of {quantity(deepest, 'm')}, but unloading curves are "
+                f"stored only from {quantity(depths[0], 'm')} to {quantity(depths[-1], 'm')} and "
+                "are not extrapolated; give a larger unloading.curves, or choose another velocity"
             )
         end, largest = self.separation(deepest), self.loading(deepest)
         shape, blended = self.shape(deepest)

@@ -47,7 +47,7 @@ class LawPoint:
 
     @model_validator(mode="after")
     def _one_number(self) -> Self:
-        if abs(self.restitution - _root(self.ratio)) > 1e-6:
+        if abs(self.restitution - root(self.ratio)) > 1e-6:
             raise ValueError("restitution: is not the square root of ratio")
         return self
 
@@ -228,8 +228,8 @@ class Law:
         ratio, off = curve.at(velocity), curve.error(velocity)
         after, share = curve.interval(velocity)
         below, above = self.points[after - 1 : after + 1]
-        e = _root(ratio)
-        between = max(abs(_root(ratio + off) - e), abs(e - _root(ratio - off)))
+        e = root(ratio)
+        between = max(abs(root(ratio + off) - e), abs(e - root(ratio - off)))
         return Estimate(
             e,
             (1 - share) * below.error + share * above.error + between,
@@ -297,5 +297,6 @@ def velocity_of(text: str) -> float:
         raise CaseError(f"velocity: {error}") from None
 
 
-def _root(ratio: float) -> float:
+def root(ratio: float) -> float:
+    """COR of W_u/W_l."""
     return math.sqrt(min(max(ratio, 0.0), 1.0))

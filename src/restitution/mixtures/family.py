@@ -20,6 +20,7 @@ from restitution.case.case_file import parse_case
 from restitution.case.derived import deepest_indentation
 from restitution.contact.bodies import Body, Pair
 from restitution.contact.checks.resolution import predicted_radius
+from restitution.display import quantity
 from restitution.errors import CaseError, RestitutionError
 from restitution.laws.particle import Particle
 from restitution.mixtures.mixture_file import Component, Mixture
@@ -96,8 +97,8 @@ class Family:
         if nodes > _MOST_NODES:
             raise CaseError(
                 f"grid: the pair {self.name} needs {nodes} nodes per edge, but at most "
-                f"{_MOST_NODES} are allowed (spacing {1e6 * spacing:.3g} um for the roughness, "
-                f"grid width {1e6 * width:.3g} um for the contact); give the table [grid], lower "
+                f"{_MOST_NODES} are allowed (spacing {quantity(spacing, 'm')} for the roughness, "
+                f"grid width {quantity(width, 'm')} for the contact); give the table [grid], lower "
                 "velocities, or smaller radii"
             )
         return {"nodes": nodes, "spacing": f"{spacing!r} m", "refine": "auto"}

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from restitution.curve.interpolation import RatioCurve
 from restitution.laws.compact_fit import compact_fit
-from restitution.laws.law import Law, LawPoint
+from restitution.laws.law import Law, LawPoint, root
 from restitution.mixtures.family import Family, ParticlePair
 
 Array = NDArray[np.float64]
@@ -128,7 +128,7 @@ class FamilyLaws:
         pull_off = [point.pull_off_force for law in laws for point in law.points]
         return LawPoint(
             velocity=V,
-            restitution=_root(ratio),
+            restitution=root(ratio),
             error=sum(shares[k] * estimates[k].error for k in used) + between,
             ratio=ratio,
             loading_work=0.5 * pair.mass * V * V,
@@ -156,8 +156,8 @@ def _value(curve: RatioCurve, radius: float) -> float:
 def _error_of(curve: RatioCurve, radius: float, near: list[RatioCurve]) -> float:
     ratio = _value(curve, radius)
     off = max(other.error(radius) for other in near)
-    e = _root(ratio)
-    return max(abs(_root(ratio + off) - e), abs(e - _root(ratio - off)))
+    e = root(ratio)
+    return max(abs(root(ratio + off) - e), abs(e - root(ratio - off)))
 
 
 def _column_at(law: Law, name: str, velocity: float) -> float:
@@ -166,10 +166,6 @@ def _column_at(law: Law, name: str, velocity: float) -> float:
     if (values <= 0).any():
         return float(np.interp(math.log(velocity), L, values))
     return math.exp(np.interp(math.log(velocity), L, np.log(values)))
-
-
-def _root(ratio: float) -> float:
-    return math.sqrt(min(max(ratio, 0.0), 1.0))
 
 
 def _scaled(value: float | None, factor: float) -> float | None:

@@ -114,7 +114,7 @@ class Companions:
     def weaker(self, factors: Array) -> WorkCurve:
         """The curve of `coarse` with its yield limit times `factors`, one for each depth."""
         coarse = self.coarse
-        lowered = [replace(coarse, plasticity=coarse.plasticity.weaker(f)) for f in factors]
+        lowered = [replace(coarse, plasticity=coarse.plasticity.scaled(f)) for f in factors]
         if all(contact == coarse for contact in lowered):
             return self.own
         return _curve_of(lowered, self.depths, self.case.unloading.method)

@@ -37,10 +37,7 @@ class Finding(ABC):
 
     @abstractmethod
     def text(self, prescribed: str = "indentation") -> str:
-        """One line that also says what to do.
-
-        `prescribed` is the table of the case file that prescribes the depths.
-        """
+        """One line with the remedy; `prescribed` is the table that prescribes the depths."""
 
 
 @dataclass(frozen=True)
@@ -126,8 +123,6 @@ class ImpossibleSlope(Finding):
 
 @dataclass(frozen=True)
 class _AtEdge(Finding):
-    """Contact at the edge of the grid; lengths in m."""
-
     indentation: float
     size: tuple[float, float]  # edge lengths of the grid
     needed: tuple[float, float]  # edge lengths of a grid that is large enough
@@ -144,22 +139,17 @@ class _AtEdge(Finding):
     def advice(self, prescribed: str) -> str:
         """How to keep the contact inside the grid, for the end of a message."""
         x, y = self.first_touch
-        where = (
-            f"the bodies touch first at x = {1e6 * x:.3g} um, y = {1e6 * y:.3g} um, off the "
-            "centre; "
-            if self.off_centre
-            else ""
-        )
+        at = f"x = {1e6 * x:.3g} um, y = {1e6 * y:.3g} um"
+        where = f"the bodies touch first at {at}, off the centre; " * self.off_centre
         size, scan = self.needed_in_words(), self.scan
         if scan is None:
             return (
                 f"{where}use a grid of about {size} (more grid.nodes or a larger grid.spacing) or "
                 f"{_STOPS[prescribed]}"
             )
-        detrend = {
-            "tilt": 'roughness.detrend = "curvature", ',
-            "curvature": "",
-        }.get(str(self.levelling), 'roughness.detrend = "tilt" or "curvature", ')
+        remedies = {"tilt": 'roughness.detrend = "curvature", ', "curvature": ""}
+        either = 'roughness.detrend = "tilt" or "curvature", '
+        detrend = remedies.get(str(self.levelling), either)
         larger = "a larger scan, roughness.extend"
         if all(edge <= of for edge, of in zip(self.needed, scan, strict=True)):
             has = f"{1e6 * scan[0]:.3g} x {1e6 * scan[1]:.3g}"
@@ -183,7 +173,7 @@ class EdgePredicted(_AtEdge):
 
     def text(self, prescribed: str = "indentation") -> str:
         return (
-            f"the contact is predicted to reach the edge of the grid: the gap there is "
+            "the contact is predicted to reach the edge of the grid: the gap there is "
             f"{_nm(self.gap)} at first touch, and the deepest indentation is "
             f"{_nm(self.indentation)}; {self.advice(prescribed)}"
         )

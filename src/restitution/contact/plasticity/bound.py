@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -55,6 +55,7 @@ class ConstantBound(Plasticity):
 
     label = "equilibrium"
     bytes_per_node = 140.0
+    strengths = ("yield_pressure",)
 
     def __post_init__(self) -> None:
         set_field(self, "yield_pressure", "Pa", finite=False)
@@ -63,9 +64,6 @@ class ConstantBound(Plasticity):
     def hardness(self) -> float:
         """Yield pressure (Pa)."""
         return self.yield_pressure
-
-    def weaker(self, factor: float) -> ConstantBound:
-        return replace(self, yield_pressure=factor * self.yield_pressure)
 
     def describe(self) -> str:
         if math.isinf(self.yield_pressure):

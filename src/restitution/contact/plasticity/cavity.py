@@ -92,6 +92,7 @@ class ExpandingCavity(Plasticity):
     label = "expanding-cavity"
     grows = True
     for_periodic = False
+    strengths = ("yield_strength",)
 
     def __post_init__(self) -> None:
         set_field(self, "yield_strength", "Pa")
@@ -109,9 +110,6 @@ class ExpandingCavity(Plasticity):
     def hardness(self) -> float:
         """Pressure of a fully plastic contact, 2.8 Y (Pa)."""
         return FULL_CONSTRAINT * self.yield_strength
-
-    def weaker(self, factor: float) -> ExpandingCavity:
-        return replace(self, yield_strength=factor * self.yield_strength)
 
     def describe(self) -> str:
         return f"yield strength {quantity(self.yield_strength, 'Pa')} ({self.label})"

@@ -52,6 +52,7 @@ class Truncated(Plasticity):
     label = "truncated"
     bounds_solve = False
     for_periodic = False
+    strengths = ("yield_pressure",)
 
     def __post_init__(self) -> None:
         set_field(self, "yield_pressure", "Pa")
@@ -60,9 +61,6 @@ class Truncated(Plasticity):
     def hardness(self) -> float:
         """Yield pressure (Pa)."""
         return self.yield_pressure
-
-    def weaker(self, factor: float) -> Truncated:
-        return replace(self, yield_pressure=factor * self.yield_pressure)
 
     def describe(self) -> str:
         return f"yield pressure {quantity(self.yield_pressure, 'Pa')} ({self.label})"
