@@ -6,6 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from restitution.curve.oblique import MeanObliquePoint
+from restitution.curve.periodic import PeriodicPoint
+from restitution.curve.point import MeanPoint
+
 ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "src" / "restitution"
 SOURCES = {path: path.read_text(encoding="utf-8") for path in sorted(PACKAGE.rglob("*.py"))}
@@ -49,6 +53,21 @@ def test_dataclasses_are_frozen():
     """All but those that hold the progress of a run, study or search."""
     found = {name for source in SOURCES.values() for name in changeable(source)}
     assert found == {"Tally", "RunLog", "_Run", "CaseModel"}
+
+
+def test_rows_are_looked_up_by_header_in_the_room_of_results():
+    """Elsewhere a row is a point with typed fields."""
+    columns = MeanPoint.columns() | MeanObliquePoint.columns() | PeriodicPoint.columns()
+    variables = {column.variable for column in columns.values()}
+    headers = [header for header in columns if header not in variables]
+    assert {"max_indentation_m", "force_N"} <= set(headers)
+    lookups = {
+        str(path.relative_to(PACKAGE)): count
+        for path, source in SOURCES.items()
+        if path.parent.name != "results"
+        and (count := sum(source.count(f'["{header}"]') for header in headers))
+    }
+    assert sum(lookups.values()) <= 15, lookups
 
 
 @pytest.mark.parametrize(

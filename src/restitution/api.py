@@ -32,10 +32,8 @@ def run(
 ) -> RunResults | PeriodicResults:
     """Run a case, as `restitution run` does, and open its results.
 
-    The returned results have the attributes `dataset` (an xarray Dataset with units), `summary`
-    (the content of `summary.json`) and, unless the case is periodic, `curve`. If the run fails or
-    is interrupted, the depths computed so far are kept in `out`. No figures are drawn. Use
-    `on_device` to run on a GPU.
+    If the run fails or is interrupted, the depths computed so far are kept in `out`. No figures are
+    drawn. Use `on_device` to run on a GPU.
 
     Args:
         case: Case file, or its tables: `{"first": {"material": "steel", "radius": "500 um"}, …}`.
@@ -45,8 +43,8 @@ def run(
             of the computation.
 
     Returns:
-        The results, as `open_results` reads them (`PeriodicResults` for a periodic case). Each
-        warning in them is also issued as a `UserWarning`.
+        The results, as `open_results` reads them. Each warning in them is also issued as a
+        `UserWarning`.
 
     Raises:
         RestitutionError: The case is invalid, `out` is not empty, or the run failed.
@@ -97,15 +95,13 @@ def _read(case: Folder | Mapping[str, Any]) -> tuple[Case, str, Path]:
 def open_results(folder: Folder) -> RunResults | StudyResults | PeriodicResults:
     """Open the stored results of a run, an ensemble, a convergence study or a study of many cases.
 
-    The attribute `dataset` of the returned results is an xarray Dataset in SI units. Each of its
-    variables has the attribute `units`. For a run, the dimension is `indentation_max`, or `depth`
-    if the case is periodic. Its coordinate is the indentation (m), so
-    `dataset.restitution.sel(indentation_max=1e-7, method="nearest")` selects a depth; the impact
-    velocity is a coordinate, too. For a study, the dimensions are `depth` and the swept keys, that
-    is, the keys of the case file that the study varies. Swept quantities are numeric coordinates
-    with units, so cases can be selected by value:
-    `open_results("study").dataset.sel({"roughness.rms": 1e-7}, method="nearest")`. The attribute
-    `as_written` of a coordinate holds its values as written in the study file.
+    The attribute `dataset` of the results is an xarray Dataset in SI units; `summary` is the
+    content of `summary.json`; `curve` is e(V) unless the case is periodic. The dimension of a run
+    is `indentation_max` (`depth` if the case is periodic), with the indentation (m) as coordinate:
+    `dataset.restitution.sel(indentation_max=1e-7, method="nearest")`. The dimensions of a study are
+    `depth` and the swept keys, whose coordinates are SI values:
+    `dataset.sel({"roughness.rms": 1e-7}, method="nearest")`; their attribute `as_written` holds the
+    values as written in the study file.
 
     Args:
         folder: Folder that `restitution run`, `converge` or `study` wrote.
@@ -140,11 +136,11 @@ def law_of(results: Folder | RunResults) -> Law:
     """Make the restitution law and its fits from stored results, as `restitution fit-law` does.
 
     Args:
-        results: Results of a run, ensemble or convergence study, or the folder of these results. If
-            the folder already holds a law, this law is read and returned.
+        results: Results of a run, ensemble or convergence study, or their folder. If the folder
+            already holds a law, this law is read.
 
     Returns:
-        Restitution law, that is, COR and its error at each computed impact velocity.
+        COR and its error at each computed impact velocity.
 
     Raises:
         CaseError: The results have no impact velocities, for example because a density is missing.
@@ -218,7 +214,7 @@ def collide_obliquely(
     both = spin if isinstance(spin, (tuple, list)) else (spin, 0.0)
     try:
         first, second = (
-            read_quantity(each, "rad/s") if isinstance(each, str) else each for each in both
+            read_quantity(value, "rad/s") if isinstance(value, str) else value for value in both
         )
     except ValueError as error:
         raise CaseError(f"spin: {error}") from None
@@ -226,7 +222,7 @@ def collide_obliquely(
 
 
 def _laws_in(given: Folder | Law) -> list[Law]:
-    """Return, as a list, the given law, the law in a folder, or all laws in a mixture's folder."""
+    """The given law, the law in a folder, or all laws in a mixture's folder."""
     from restitution.laws.law import Law
     from restitution.laws.law_files import is_mixture, read_laws
 
@@ -270,6 +266,6 @@ def export(
     if to not in CODES:
         raise CaseError(f"to={not_one_of(to, CODES)}")
     given = [laws] if isinstance(laws, (str, os.PathLike, Law)) else laws
-    read = [law for each in given for law in _laws_in(each)]
+    read = [law for item in given for law in _laws_in(item)]
     speed = velocity_of(velocity) if isinstance(velocity, str) else velocity
     return write_export(export_texts(read, to, speed), Path(out))

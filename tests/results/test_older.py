@@ -7,8 +7,7 @@ import xarray as xr
 
 from restitution.case.case_file import parse_case
 from restitution.results.checksums import CHECKSUMS
-from restitution.results.older import LATER, REQUIRED, as_now, dataset_as_now
-from restitution.results.reader import RunResults
+from restitution.results.reader import LATER, REQUIRED, RunResults, as_now, dataset_as_now
 from restitution.results.schema import COLUMNS
 from restitution.results.writer import ResultsFolder
 from restitution.runs.run import run_case

@@ -22,7 +22,6 @@ from restitution.errors import CaseError, DomainError, NotConvergedError, Surfac
 from restitution.runs.depths import loads_of
 from restitution.runs.messages import (
     input_warnings,
-    message,
     naming_keys,
     require_possible,
     surface_warnings,
@@ -239,14 +238,16 @@ def test_a_scan_coarser_than_the_contact_is_refused():
 
 
 def test_depths_that_are_not_resolved():
-    (found,) = unresolved_patches([1e-9, 5e-9, 20e-9, 40e-9], [1, NODES_PER_PATCH - 1, 3, 90])
-    assert message(found).startswith("3 of 4 depths (up to 20 nm) are not resolved (resolved is")
-    assert f"fewer than {NODES_PER_PATCH} nodes" in message(found)
-    (found,) = unresolved_adhesion([1e-9, 2e-9, 3e-9], [4e-9, 4e-9, 8e-9], [5e-9, 3e-9, 7e-9], 8e-9)
-    assert message(found).startswith("adhesion is not resolved at 2 of 3 depths (2 nm to 3 nm;")
-    assert message(found).endswith("needs 3 nm or less; set grid.refine = 4")
-    (found,) = unresolved_adhesion([1e-9], [4e-9], [0.01e-9], 8e-9)
-    assert "roughness.shortest" in message(found)
+    (finding,) = unresolved_patches([1e-9, 5e-9, 20e-9, 40e-9], [1, NODES_PER_PATCH - 1, 3, 90])
+    assert finding.text().startswith("3 of 4 depths (up to 20 nm) are not resolved (resolved is")
+    assert f"fewer than {NODES_PER_PATCH} nodes" in finding.text()
+    (finding,) = unresolved_adhesion(
+        [1e-9, 2e-9, 3e-9], [4e-9, 4e-9, 8e-9], [5e-9, 3e-9, 7e-9], 8e-9
+    )
+    assert finding.text().startswith("adhesion is not resolved at 2 of 3 depths (2 nm to 3 nm;")
+    assert finding.text().endswith("needs 3 nm or less; set grid.refine = 4")
+    (finding,) = unresolved_adhesion([1e-9], [4e-9], [0.01e-9], 8e-9)
+    assert "roughness.shortest" in finding.text()
 
 
 def test_a_notice_of_the_surface_is_repeated():

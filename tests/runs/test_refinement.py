@@ -13,7 +13,7 @@ from restitution.results.writer import ResultsFolder
 from restitution.runs import refinement
 from restitution.runs.depths import later_touches
 from restitution.runs.ensemble import run_realisations
-from restitution.runs.refinement import least_refined, settled
+from restitution.runs.refinement import least_refined, with_chosen_grids
 from restitution.runs.run import run_case
 from tolerance import approx
 
@@ -31,9 +31,9 @@ def patch(case, factor, tmp_path, depth):
 def test_each_depth_gets_the_coarsest_grid_that_resolves_it(auto, tmp_path):
     case = parse_case(auto)
     said = []
-    found = settled(case, tmp_path, said.append)
+    refined = with_chosen_grids(case, tmp_path, said.append)
     assert said == []
-    factors = found.factors()
+    factors = refined.factors()
     assert factors == sorted(factors, reverse=True)
     assert factors[0] > factors[-1]
     for depth, factor in zip(case.depths(), factors, strict=True):
@@ -76,29 +76,31 @@ def test_an_ensemble_has_the_same_grids_on_every_surface(auto, tmp_path):
 
 
 def test_a_list_has_a_factor_for_each_depth(auto, tmp_path):
-    found = parse_case(auto.replace('"auto"', "[4, 2, 1, 1]"))
-    assert found.factors() == [4, 2, 1, 1]
-    assert settled(found, tmp_path, pytest.fail) == found
+    refined = parse_case(auto.replace('"auto"', "[4, 2, 1, 1]"))
+    assert refined.factors() == [4, 2, 1, 1]
+    assert with_chosen_grids(refined, tmp_path, pytest.fail) == refined
     with pytest.raises(CaseError, match=r"grid\.refine: 2 values for 4 depths"):
         parse_case(auto.replace('"auto"', "[4, 2]"))
 
 
 def test_a_number_is_left_as_it_is(case_text, tmp_path):
     case = parse_case(case_text)
-    assert settled(case, tmp_path, pytest.fail) == case
+    assert with_chosen_grids(case, tmp_path, pytest.fail) == case
 
 
 def test_it_says_why_it_cannot(auto, tmp_path, monkeypatch):
     monkeypatch.setattr(refinement, "MOST_NODES", 2 * 72 * 64)
     said = []
-    found = settled(parse_case(auto), tmp_path, said.append)
-    assert found.grid.refine == 1
+    refined = with_chosen_grids(parse_case(auto), tmp_path, said.append)
+    assert refined.grid.refine == 1
     assert "the next grid would have 144 x 128 nodes" in said[0]
     assert "does not resolve" in said[0]
     monkeypatch.setattr(refinement, "MOST_NODES", 2**24)
     monkeypatch.setattr(refinement, "FACTORS", (1, 2))
-    found = settled(parse_case(auto.replace("0.05 um", "0.5 um")), tmp_path, said.append)
-    assert found.grid.refine == 2
+    refined = with_chosen_grids(
+        parse_case(auto.replace("0.05 um", "0.5 um")), tmp_path, said.append
+    )
+    assert refined.grid.refine == 2
     assert "2 is the largest refine" in said[1]
 
 
@@ -122,8 +124,8 @@ def test_a_run_has_it_in_its_results(auto, tmp_path, monkeypatch):
 def test_a_load_is_probed_as_a_load(auto, tmp_path):
     a, b = auto.index("[indentation]"), auto.index("[unloading]")
     loaded = auto[:a] + '[load]\nvalues = ["1 mN"]\n' + auto[b:]
-    found = settled(parse_case(loaded), tmp_path, pytest.fail)
-    assert found.grid.refine >= 1
+    refined = with_chosen_grids(parse_case(loaded), tmp_path, pytest.fail)
+    assert refined.grid.refine >= 1
 
 
 SMOOTH = """
@@ -148,7 +150,7 @@ values = ["8 nm", "15 nm"]
 def test_the_pull_off_radius_is_resolved(tmp_path):
     """a_c = 84 nm needs cells of 21 nm, a quarter of 60 nm; patches alone would take 60 nm."""
     text = SMOOTH.format(adhesion='adhesion = "jkr"\n')
-    assert settled(parse_case(text), tmp_path, pytest.fail).grid.refine == 4
+    assert with_chosen_grids(parse_case(text), tmp_path, pytest.fail).grid.refine == 4
 
 
 def test_an_affordable_range_of_the_attraction_is_resolved(tmp_path, monkeypatch):
@@ -157,13 +159,13 @@ def test_an_affordable_range_of_the_attraction_is_resolved(tmp_path, monkeypatch
         SMOOTH.format(adhesion="").replace("3 GPa", "80 GPa").replace('"8 nm", "15 nm"', '"1 nm"')
     )
     hard = hard.replace("60 nm", "20 nm")
-    found = settled(parse_case(hard), tmp_path, pytest.fail)
-    assert (found.interface.adhesion, found.grid.refine) == ("cohesive", 4)
+    refined = with_chosen_grids(parse_case(hard), tmp_path, pytest.fail)
+    assert (refined.interface.adhesion, refined.grid.refine) == ("cohesive", 4)
     assert least_refined(parse_case(hard), tmp_path).grid.refine == 4
     monkeypatch.setattr(refinement, "MOST_COHESIVE_NODES", 96**2)
     said = []
-    found = settled(parse_case(hard), tmp_path, said.append)
-    assert found.interface.adhesion == "jkr"
+    refined = with_chosen_grids(parse_case(hard), tmp_path, said.append)
+    assert refined.interface.adhesion == "jkr"
     assert 'too coarse for "cohesive"' in said[0]
 
 
@@ -171,11 +173,11 @@ def test_what_adhesion_would_need_is_said(tmp_path, monkeypatch):
     monkeypatch.setattr(refinement, "MOST_NODES", 96**2)
     said = []
     text = SMOOTH.format(adhesion='adhesion = "jkr"\n')
-    assert settled(parse_case(text), tmp_path, said.append).grid.refine == 2
+    assert with_chosen_grids(parse_case(text), tmp_path, said.append).grid.refine == 2
     assert "the next grid would have 192 x 192 nodes" in said[0]
     assert "adhesion needs cells of 2" in said[0]
     assert "(grid.refine = 4, 192 x 192 nodes, about " in said[0]
     cohesive = SMOOTH.format(adhesion='adhesion = "cohesive"\n')
     monkeypatch.setattr(refinement, "MOST_COHESIVE_NODES", 96**2)
-    settled(parse_case(cohesive), tmp_path, said.append)
+    with_chosen_grids(parse_case(cohesive), tmp_path, said.append)
     assert "or less (6144 x 6144 nodes)" in said[1]

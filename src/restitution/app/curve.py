@@ -25,7 +25,7 @@ from restitution.curve.point import Point
 from restitution.errors import DomainError, RestitutionError
 from restitution.runs.depths import CaseUnloading, loads_of
 from restitution.runs.messages import input_warnings, require_possible
-from restitution.runs.refinement import settled, with_chosen_adhesion
+from restitution.runs.refinement import with_chosen_adhesion, with_chosen_grids
 from restitution.runs.smooth import smooth_curve
 from restitution.surfaces import Surface
 
@@ -47,7 +47,7 @@ class LiveCurves:
         """
         case = parse_case(text).realisation(0)
         case.require_impact()
-        case = settled(case, folder)
+        case = with_chosen_grids(case, folder)
         contact = self._contact(case, folder)
         deepest = deepest_indentation(case)
         require_possible(contact, deepest)

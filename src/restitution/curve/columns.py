@@ -18,8 +18,7 @@ Array = NDArray[np.float64]
 class Column:
     """A column: its header in CSV files, its variable in `results.nc`, unit, meaning and limits.
 
-    Cells of a `flag` column are true or false, and those of an `optional` column may be empty
-    (NaN). All other cells are finite numbers from `low` to `high`.
+    Cells of a `flag` column are true or false, those of an `optional` column may be empty (NaN).
     """
 
     header: str
@@ -32,7 +31,7 @@ class Column:
     flag: bool = False
 
     def labelled(self, along: str | tuple[str, ...], values: object) -> tuple[object, ...]:
-        """Make a variable of `results.nc` with the dimensions `along` and the values `values`."""
+        """A variable of `results.nc` with the dimensions `along`."""
         return along, values, {"units": self.unit, "long_name": self.meaning}
 
 
@@ -51,7 +50,6 @@ def column(
 
 
 def magnitude(header: str, unit: str, meaning: str, variable: str = "", **limits: Any) -> Any:
-    """Make a field whose values are not negative."""
     return column(header, unit, meaning, variable, low=0.0, **limits)
 
 

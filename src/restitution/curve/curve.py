@@ -61,7 +61,7 @@ class Curve:
 
     @property
     def impacts(self) -> Curve:
-        """The points at which the loading work is positive: an impact has this depth."""
+        """The points with positive loading work: an impact has this depth."""
         return Curve(tuple(point for point in self.points if point.loading_work > 0))
 
     def at(self, velocity: ArrayLike) -> Array:

@@ -1,8 +1,4 @@
-"""Follow a curve: load to one depth after the other, and unload.
-
-This is the only loop over depths. Runs, companion curves, the fit, the page and the smooth
-reference differ in the loads that they pass to it.
-"""
+"""Follow a curve: load to one depth after the other, and unload. The only loop over depths."""
 
 from __future__ import annotations
 
@@ -27,8 +23,8 @@ class Load:
     """One depth of a curve to be computed.
 
     `to` loads `contact`, from a state at a smaller depth on the same contact or None. `prescribed`
-    is the prescribed value (m, N, m/s or Pa). `refine` and `touch` are those of `Point.of`. If
-    `unload` is true, the unloading curve is computed even if the collision does not need it.
+    is the prescribed value (m, N, m/s or Pa). `refine` and `touch` are those of `Point.of`. With
+    `unload`, the unloading curve is computed even if the collision does not need it.
     """
 
     contact: Contact
@@ -50,7 +46,7 @@ class Unloading:
     def of(
         self, state: State, known: Sequence[State], *, always: bool
     ) -> tuple[Collision, Sequence[State]]:
-        """The collision whose deepest state is `state`, and its unloading curve; see `Impact`."""
+        """The collision whose deepest state is `state`, and its unloading curve."""
         followed = state.contact.adhesive and self.method == "path"
         path: Sequence[State] = ()
         if followed or always:
@@ -74,15 +70,11 @@ class Impact:
 
     @cached_property
     def point(self) -> Point:
-        """The point of the curve."""
         return Point.of(self.state, self.collision, self.load.refine, self.load.touch)
 
 
 def loaded(loads: Iterable[Load], failed: Failed | None = None) -> Iterator[tuple[Load, State]]:
-    """Load to one depth after the other, each from the state before on the same contact.
-
-    Without `failed`, errors are raised.
-    """
+    """Load to one depth after the other, each from the state before on the same contact."""
     contact: Contact | None = None
     state: State | None = None
     for load in loads:
@@ -108,12 +100,8 @@ def follow(
         loads: The depths, in increasing order.
         unloading: How the contacts are unloaded. An adhesive contact reuses the unloading curve of
             the depth before.
-        failed: Called with the error of each depth that is left out, such as one at which the
-            contact reaches the edge of the grid; returns whether the curve goes on. Without it,
-            errors are raised.
-
-    Yields:
-        The impact at each depth.
+        failed: Called with the error of a depth that is left out; returns whether the curve goes
+            on. Without it, errors are raised.
 
     Raises:
         NotConvergedError: A tolerance was not reached.

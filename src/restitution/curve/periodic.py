@@ -62,7 +62,6 @@ class PeriodicPoint(Record):
 
     @classmethod
     def of(cls, state: State, stiffness: float) -> Self:
-        """Make the point of one state of loading and its stiffness (Pa/m)."""
         patches = state.patch_sizes()
         return cls(
             indentation=state.indentation,
@@ -90,17 +89,13 @@ class PeriodicPoint(Record):
 
 @dataclass(frozen=True, eq=False)
 class Histogram:
-    """Distribution of the contact pressure: its `density` (1/Pa) at each `pressure` (Pa).
-
-    The sum of the density times the width of a bin is the relative contact area.
-    """
+    """Distribution of the contact pressure: its `density` (1/Pa) at each `pressure` (Pa)."""
 
     pressure: Array
     density: Array
 
     @classmethod
     def of(cls, state: State) -> Self:
-        """Distribution of the pressure of `state` over the nodes in contact."""
         pressure = state.box_pressure[state.box_touching]
         ends = min(0.0, float(pressure.min(initial=0.0))), float(pressure.max(initial=0.0))
         counts, edges = np.histogram(pressure, _BINS, ends if ends[1] > ends[0] else (0.0, 1.0))

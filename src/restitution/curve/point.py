@@ -137,8 +137,8 @@ class Point(Record):
     def of(cls, state: State, collision: Collision, refine: int = 1, touch: float = 0.0) -> Self:
         """Make the point of an impact whose deepest state is `state`.
 
-        `refine` is the refinement factor of the grid. `touch` (m) is the approach at first touch on
-        this grid minus that on the finest grid. It is added to the indentations.
+        `touch` (m) is the approach at first touch on this grid minus that on the finest grid; it is
+        added to the indentations.
         """
         patches = state.patch_sizes()
         # Without positive work of loading, no impact has its deepest point here.

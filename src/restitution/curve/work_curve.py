@@ -39,7 +39,6 @@ class WorkCurve:
 
     @property
     def restitution(self) -> Array:
-        """COR of the impacts; 0 if the bodies stick."""
         return np.sqrt(np.clip(self.unloading_work / self.work, 0.0, 1.0))
 
     def ratio(self, work: Array) -> Array:
@@ -61,9 +60,8 @@ class WorkCurve:
     def at(self, work: Array) -> Array:
         """COR at `work` (J): monotone cubic in ln(work), constant beyond the ends; NaN if empty.
 
-        If every impact loses energy, the logarithm of the energy loss is interpolated instead of
-        COR. This keeps COR accurate between impacts that stick and impacts that separate, where COR
-        rises steeply from zero.
+        If every impact loses energy, the logarithm of the loss is interpolated, which is accurate
+        where COR rises steeply from zero between impacts that stick and impacts that separate.
         """
         from scipy.interpolate import PchipInterpolator
 

@@ -27,7 +27,7 @@ from restitution.fit.model import Array, CaseModel, restitution
 from restitution.fit.parameters import Parameter, free_parameters
 from restitution.fit.uncertainty import MODEL_SHARES, Deviations, Uncertainty
 from restitution.runs.log import Say, ignore
-from restitution.runs.refinement import settled
+from restitution.runs.refinement import with_chosen_grids
 from restitution.sweeps.sweep import put
 
 _FINE = 60  # number of velocities of the fitted curve
@@ -112,7 +112,7 @@ def fit(
     start = np.zeros(len(parameters))
     case = model.case(start)
     if case.grid.refine == "auto":  # use the factor that resolves the case with the first guess
-        put(content, "grid.refine", settled(case, folder).grid.factor)
+        put(content, "grid.refine", with_chosen_grids(case, folder).grid.factor)
     model.require_possible(start)
     given = measured.deviation
     data = Data(V, measured.restitution, np.full(V.size, ASSUMED) if given is None else given)

@@ -1,8 +1,4 @@
-"""SHA-256 checksums of the files of a folder, so that damaged files are not read as results.
-
-The checksums are in the file `SHA256SUMS`, in the format of the program `sha256sum`. If this file
-is missing (removed or never written), the other files are not checked.
-"""
+"""SHA-256 checksums of the files of a folder, in `SHA256SUMS`; without it, nothing is checked."""
 
 from __future__ import annotations
 
@@ -16,7 +12,6 @@ CHECKSUMS = "SHA256SUMS"
 
 
 def checksums(folder: Path, names: Sequence[str]) -> str:
-    """Compute the content of `SHA256SUMS` for the files `names` in `folder`."""
     return "".join(f"{_checksum(folder / name)}  {name}\n" for name in names)
 
 

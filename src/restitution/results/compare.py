@@ -26,12 +26,9 @@ class Comparison:
     """The comparison of two runs or studies, a and b.
 
     Attributes:
-        rows: A row for each compared depth. It contains `max_indentation_m`, `restitution_a`,
-            `restitution_b`, the `difference` of COR (b minus a), and the `error` of this
-            difference. This error is combined from the errors of a and b. `significant` says
-            whether the difference exceeds the error. `resolved` says whether both grids resolve the
-            contact. `force_ratio` is the force of b divided by the force of a. Rows of studies also
-            contain the swept values.
+        rows: A row for each compared depth, with COR of a and of b, the `difference` (b minus a)
+            with its `error`, and `force_ratio` (b divided by a). Rows of studies also contain the
+            swept values.
         inputs: The keys of the input files whose values differ, with the values in a and in b.
         notes: Remarks on the comparison.
     """
@@ -74,7 +71,7 @@ def _studies(a: Path, b: Path) -> Comparison:
             "common values"
         )
     compared = [_curves(of_a[key], of_b[key], dict(key)) for key in common]
-    rows = [row for found, _ in compared for row in found]
+    rows = [row for curve, _ in compared for row in curve]
     notes = list(dict.fromkeys(note for _, said in compared for note in said))
     for name, this, other in ((a, of_a, of_b), (b, of_b, of_a)):
         if alone := len(this.keys() - other.keys()):
@@ -85,10 +82,7 @@ def _studies(a: Path, b: Path) -> Comparison:
 def _curves(
     a: Sequence[Point], b: Sequence[Point], swept: Mapping[str, str]
 ) -> tuple[list[dict[str, Any]], list[str]]:
-    """Compare two curves at the depths of `a`; return rows of the table, and notes.
-
-    The curve `b` is interpolated. Depths of `a` outside the range of `b` are left out.
-    """
+    """Compare two curves at the depths of `a` inside the range of `b`, which is interpolated."""
     depth_b = array(b, "indentation")
     weights = [_weights(depth_b, point.indentation) for point in a]
     rows = [
@@ -110,10 +104,9 @@ def _curves(
 
 
 def _weights(depths: NDArray[np.float64], depth: float) -> dict[int, float]:
-    """Return, by row number, the weights of the rows that interpolate a curve at `depth`.
+    """The weights, by number, of the points that interpolate a curve at `depth` (m).
 
-    The rows of the curve have the depths `depths`. The result is empty if `depth` is outside their
-    range.
+    Empty if `depth` lies outside the range of `depths`.
     """
     same = np.flatnonzero(np.abs(depths - depth) <= _SAME * depth)
     if same.size:
@@ -127,7 +120,7 @@ def _weights(depths: NDArray[np.float64], depth: float) -> dict[int, float]:
 
 
 def _difference(point: Point, other: Sequence[Point], weights: Sequence[float]) -> dict[str, Any]:
-    """Compare a point with the weighted mean of the rows `other`."""
+    """Compare a point with the weighted mean of the points `other`."""
     cor_a = point.restitution
     cor_b, force_b = (
         float(np.dot(weights, array(other, name))) for name in ("restitution", "force")
@@ -146,7 +139,7 @@ def _difference(point: Point, other: Sequence[Point], weights: Sequence[float]) 
 
 
 def _error(point: Point) -> float:
-    """Error of COR: root sum of squares of its numerical error, grid error and ensemble error."""
+    """Error of COR: its numerical error, grid error and ensemble error in quadrature."""
     parts = [point.restitution_error, point.discretisation_error]
     if isinstance(point, MeanPoint):
         parts.append(0.5 * (point.restitution_high - point.restitution_low))
@@ -156,7 +149,6 @@ def _error(point: Point) -> float:
 def _complete_cases(
     study: StudyResults,
 ) -> dict[tuple[tuple[str, str], ...], tuple[Point, ...]]:
-    """Map the swept values of each complete case to the rows of its curve."""
     return {
         tuple(case.swept.items()): case.curve.points
         for case in study.cases
@@ -177,7 +169,6 @@ def _run(folder: Path) -> tuple[tuple[Point, ...], str]:
 
 
 def _inputs(a: str, b: str) -> list[tuple[str, str, str]]:
-    """Return the keys whose values differ between two TOML texts, with both values."""
     flat_a, flat_b = (dict(_flat(parse_toml(text))) for text in (a, b))
     return [
         (key, flat_a.get(key, "–"), flat_b.get(key, "–"))

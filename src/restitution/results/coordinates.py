@@ -12,8 +12,8 @@ _INDEX = {
     "unloading": "unloading_from",
     "smooth": "smooth_indentation",
 }
-# Coordinates beside the index; they may be NaN, and depend on several dimensions.
-_BESIDE = (
+# Coordinates without an index; they may be NaN, and depend on several dimensions.
+_OTHERS = (
     "impact_velocity",
     "smooth_impact_velocity",
     "nominal_pressure",
@@ -25,8 +25,7 @@ _BESIDE = (
 def with_coordinates(results: xr.Dataset) -> xr.Dataset:
     """Make depth, velocity, nominal pressure and the points of unloading curves coordinates.
 
-    The values come from the variables, so files without coordinates get them as well. A dimension
-    whose variable is missing, or depends on other dimensions, stays without an index.
+    A dimension whose variable is missing, or depends on other dimensions, stays without an index.
     """
     index = {
         dimension: (dimension, results[name].values, results[name].attrs)
@@ -37,7 +36,7 @@ def with_coordinates(results: xr.Dataset) -> xr.Dataset:
         steps = np.arange(results.sizes["unloading_step"])
         words = {"units": "1", "long_name": "point of the unloading curve, from the deepest"}
         index["unloading_step"] = ("unloading_step", steps, words)
-    beside = [name for name in _BESIDE if name in results]
+    others = [name for name in _OTHERS if name in results]
     if "indentation" in results and results["indentation"].ndim > 1:  # a study
-        beside.append("indentation")
-    return results.assign_coords(index).set_coords(beside)
+        others.append("indentation")
+    return results.assign_coords(index).set_coords(others)

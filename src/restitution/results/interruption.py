@@ -24,8 +24,8 @@ _handlers: dict[int, _Handler] = {}
 def hold_signals() -> Iterator[None]:
     """Delay SIGINT, SIGTERM and SIGHUP until the `with` body has ended, normally or by an error.
 
-    Only signals with a Python handler are delayed, because other signals do not raise exceptions.
-    Only the main thread receives signals, so in other threads this function does nothing.
+    Only signals with a Python handler are delayed: others raise no exceptions. Only the main thread
+    receives signals, so in other threads this does nothing.
     """
     global _depth
     if threading.current_thread() is not threading.main_thread():
@@ -64,7 +64,6 @@ def _release() -> None:
 
 
 def _note(number: int, frame: FrameType | None) -> None:
-    """Store a signal while signals are delayed; otherwise pass it to its handler."""
     if _depth:
         _received.append(number)
     else:

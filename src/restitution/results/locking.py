@@ -18,8 +18,7 @@ from restitution.results.writer import writing
 def locked(folder: Path) -> Iterator[None]:
     """Make `folder`, and lock it against other processes during the `with` body.
 
-    At the end, the lock file is removed. If the folder is new and still empty, it is removed, too.
-    Raises `OutputError` if another process holds the lock or the folder cannot be written.
+    At the end, the lock file is removed, and the folder if it is new and still empty.
     """
     lock = FileLock(folder / LOCK)
     with writing(folder):

@@ -32,7 +32,6 @@ class DepthMaps:
 
     @classmethod
     def of(cls, state: State) -> DepthMaps:
-        """Take the maps of `state`."""
         plastic = state.plastic_displacement
         lowered = bounding_box(plastic != 0) or (slice(0, 0), slice(0, 0))
         return cls(
@@ -64,12 +63,11 @@ def write_maps(
     points: Sequence[Record],
     along: Mapping[str, str],
 ) -> None:
-    """Write `maps.nc` into `folder`, completely or not at all. Raises `OutputError`.
+    """Write `maps.nc` on the finest grid of the depths, completely or not at all.
 
-    The grid of the file is the finest of the depths. `maps` and `points` have an item for each
-    depth. The keys of `along` are headers of columns, whose variables have the names that are the
-    values: first the coordinate of the depths, then others. Only one map at a time is expanded to
-    the whole grid.
+    `maps` and `points` have an item for each depth. `along` gives headers of columns and the names
+    of their variables: first the coordinate of the depths, then others. Only one map at a time is
+    expanded to the whole grid.
     """
     import netCDF4
 

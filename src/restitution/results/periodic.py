@@ -50,7 +50,6 @@ class PeriodicResults:
         summary: dict[str, Any],
         dataset: xr.Dataset,
     ) -> Self:
-        """Make the results of a run that has just ended."""
         results = cls(folder)
         vars(results).update(points=tuple(points), summary=summary, dataset=dataset)
         return results
@@ -67,7 +66,6 @@ class PeriodicResults:
 
     @cached_property
     def points(self) -> tuple[PeriodicPoint, ...]:
-        """The points of the curve, from `periodic.csv`."""
         path = self._file(PERIODIC_FILE)
         cells = read_cells(path, set(COLUMNS) - {"stiffness_Pa_per_m"})
         rows = [read_numbers(path, line, row, COLUMNS) for line, row in enumerate(cells, 2)]
@@ -76,12 +74,10 @@ class PeriodicResults:
 
     @property
     def rows(self) -> list[dict[str, Any]]:
-        """The rows of `periodic.csv`: dictionaries with its headers as keys."""
         return [point.cells() for point in self.points]
 
     @cached_property
     def summary(self) -> dict[str, Any]:
-        """The content of `summary.json`."""
         return read_json(self._file("summary.json"))
 
     def _file(self, name: str) -> Path:
@@ -99,10 +95,7 @@ class PeriodicResults:
 def periodic_dataset(
     points: Sequence[PeriodicPoint], histograms: Sequence[Histogram], deepest: State
 ) -> xr.Dataset:
-    """Make the content of `results.nc`, with units: curve, histograms, maps of the deepest state.
-
-    `points` and `histograms` have one item for each depth.
-    """
+    """The content of `results.nc`: curve, histograms and maps of the deepest state."""
     distributions = {
         variable: (
             ("depth", "pressure_bin"),

@@ -25,7 +25,6 @@ from restitution.display import counted, quantity, summary_html, summary_text
 from restitution.errors import CaseError, OutputError, first_problem
 from restitution.results.checksums import check_file
 from restitution.results.coordinates import with_coordinates
-from restitution.results.older import REQUIRED, as_now, dataset_as_now
 from restitution.results.schema import (
     ALL_COLUMNS,
     ALL_OBLIQUE_COLUMNS,
@@ -51,6 +50,9 @@ from restitution.results.tables import (
 )
 
 Oblique = tuple[ObliquePoint, ...]
+LATER = frozenset({"pull_off_error_N", "adhesive_spacing_m"})
+"""Columns that older tables lack; they are read as empty."""
+REQUIRED = tuple(name for name in COLUMNS if name not in LATER)
 
 
 class _Stored(BaseModel):
@@ -98,7 +100,6 @@ class RunResults:
     def in_memory(
         cls, curve: Curve, summary: dict[str, Any], dataset: xr.Dataset, oblique: Oblique = ()
     ) -> Self:
-        """Make results that are stored in no folder."""
         results = cls(None)
         # `cached_property` looks here first.
         vars(results).update(curve=curve, summary=summary, dataset=dataset, oblique=oblique)
@@ -106,13 +107,11 @@ class RunResults:
 
     @cached_property
     def curve(self) -> Curve:
-        """The points of the curve, from `curve.csv`."""
         rows = _read_rows(self._file("curve.csv"), REQUIRED, ALL_COLUMNS)
         return Curve(tuple(map(_point, rows)))
 
     @cached_property
     def summary(self) -> dict[str, Any]:
-        """The content of `summary.json`."""
         path = self._file("summary.json")
         content = read_json(path)
         try:
@@ -149,12 +148,10 @@ class RunResults:
 
     @cached_property
     def case_text(self) -> str:
-        """The text of the case file."""
         return self._case_and_depths[0]
 
     @cached_property
     def case(self) -> Case:
-        """The case of the run, parsed from `case_text`."""
         try:
             return parse_case(self.case_text)
         except CaseError as error:
@@ -297,7 +294,6 @@ class StudyResults:
 
     @cached_property
     def text(self) -> str:
-        """The text of the study file."""
         return read_text(self.folder / "study.toml")
 
     @cached_property
@@ -306,7 +302,6 @@ class StudyResults:
         return with_coordinates(read_netcdf(self.folder / "study.nc"))
 
     def run(self, name: str) -> RunResults:
-        """Return the results of the case `name`."""
         return RunResults(self.folder / "cases" / name)
 
     def _summary(self) -> list[str]:
@@ -342,8 +337,25 @@ def _point(row: Mapping[str, Any]) -> Point:
 def _read_rows(
     path: Path, required: Iterable[str], columns: Mapping[str, Column]
 ) -> list[dict[str, Any]]:
-    """Read and check a table, which must have the columns `required`."""
     cells = read_cells(path, required)
     rows = [as_now(read_numbers(path, line, row, columns)) for line, row in enumerate(cells, 2)]
     check_file(path)
     return rows
+
+
+def as_now(row: dict[str, Any]) -> dict[str, Any]:
+    """Bring a row of an older table up to date."""
+    if "adhesion_resolved" not in row:
+        return row
+    resolved = row["resolved"] and row["adhesion_resolved"]  # `resolved` left adhesion out
+    missing = dict.fromkeys(LATER - row.keys(), math.nan)
+    return row | missing | {"resolved": resolved}
+
+
+def dataset_as_now(results: xr.Dataset) -> xr.Dataset:
+    depths = results.sizes.get("indentation_max", 0)
+    for column in (COLUMNS[name] for name in LATER if COLUMNS[name].variable not in results):
+        results[column.variable] = column.labelled("indentation_max", np.full(depths, np.nan))
+    if {"resolved", "adhesion_resolved"} <= set(results):
+        results["resolved"] = results["resolved"] & results["adhesion_resolved"]
+    return results

@@ -25,7 +25,6 @@ def stored_file(folder: Path | None, name: str) -> Path:
 
 
 def read_text(path: Path) -> str:
-    """Read a text file of results. Raises `OutputError`."""
     with reading(path):
         text = path.read_text(encoding="utf-8")
     check_file(path)
@@ -33,7 +32,6 @@ def read_text(path: Path) -> str:
 
 
 def read_json(path: Path) -> dict[str, Any]:
-    """Read a JSON file that contains an object. Raises `OutputError`."""
     with reading(path):
         content = json.loads(read_text(path))
     if not isinstance(content, dict):
@@ -42,13 +40,11 @@ def read_json(path: Path) -> dict[str, Any]:
 
 
 def read_netcdf(path: Path) -> xr.Dataset:
-    """Load a netCDF file into memory. Raises `OutputError`."""
     with opened(path) as stored:
         return stored.load()
 
 
 def read_maps(folder: Path) -> xr.Dataset:
-    """Load the maps of every depth into memory. Raises `OutputError`."""
     path = folder / "maps.nc"
     if (folder / "results.nc").is_file() and not path.is_file():
         raise OutputError(

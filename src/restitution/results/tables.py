@@ -1,7 +1,4 @@
-"""Read the tables of stored results as text and as numbers, and report damaged files.
-
-Also find out whether a folder holds a periodic contact, whose tables have other columns.
-"""
+"""Read the tables of stored results as text and as numbers, and report damaged files."""
 
 from __future__ import annotations
 
@@ -18,17 +15,14 @@ from restitution.results.schema import ALL_COLUMNS, PERIODIC_FILE
 
 
 def is_periodic(folder: Path) -> bool:
-    """Whether `folder` holds the results of a periodic contact."""
     return (folder / PERIODIC_FILE).is_file()
 
 
 def has_maps(folder: Path) -> bool:
-    """Whether `folder` holds the maps of every depth."""
     return (folder / "maps.nc").is_file()
 
 
 def require_restitution(folder: Path) -> None:
-    """Raise `OutputError` if `folder` holds a periodic contact, which has no restitution."""
     if is_periodic(folder):
         raise OutputError(
             f"{folder}: holds the results of a periodic contact, which has no restitution; "
@@ -38,7 +32,6 @@ def require_restitution(folder: Path) -> None:
 
 
 def damaged(path: Path, why: object) -> OutputError:
-    """Make the error for a damaged file."""
     return OutputError(f"{path}: is damaged ({one_line(str(why))}); compute it again")
 
 
@@ -80,10 +73,7 @@ def read_numbers(
     cells: Mapping[str, str],
     columns: Mapping[str, Column] = ALL_COLUMNS,
 ) -> dict[str, Any]:
-    """Convert the cells of one row to numbers, for all `columns` that are present in the row.
-
-    Raises `OutputError` if a cell holds a value that no run writes.
-    """
+    """Convert the cells of one row to numbers, for all `columns` that are present in the row."""
     numbers = {
         name: _number(path, f"line {line}: {name}", column, cells[name])
         for name, column in columns.items()
@@ -111,7 +101,6 @@ def _number(path: Path, where: str, column: Column, text: str) -> float | bool:
 
 
 def check_number(path: Path, where: str, column: Column, value: float) -> None:
-    """Raise `OutputError` if `value` lies outside the limits of `column`."""
     if math.isnan(value):
         if not column.optional:
             raise damaged(path, f"{where} has no value")

@@ -1,9 +1,8 @@
 """Write a results folder.
 
-While a case runs, rows are appended to `curve.csv` and `unloading.csv` one by one, so that the rows
-survive if the run is stopped. `results.nc` and `summary.json` are written once, at the end or on
-interruption. Each of these two files is first written under a temporary name and then renamed.
-Signals are delayed while a file is written.
+Rows are appended to `curve.csv` and `unloading.csv` one by one, so that they survive if the run is
+stopped. The other files are written at the end or on interruption, under a temporary name, and then
+renamed. Signals are delayed while a file is written.
 """
 
 from __future__ import annotations
@@ -42,7 +41,6 @@ _BLOCK = 1 << 16  # bytes written to find out whether the disk is full
 
 
 def versions() -> dict[str, str]:
-    """Versions of this program and of the packages that its results depend on."""
     packages = ("restitution", "numpy", "scipy", "ducc0", "xarray", "netCDF4")
     python = {"python": platform.python_version()}
     return {name: importlib.metadata.version(name) for name in packages} | python
@@ -52,7 +50,6 @@ class ResultsFolder:
     """The results of one run so far, in a folder or, if `path` is None, in memory only."""
 
     def __init__(self, path: Path | None) -> None:
-        """Make the folder. Raises `OutputError` if it is not empty or cannot be written."""
         self.path = path
         self.curve = Curve()
         self.periodic: list[PeriodicPoint] = []
@@ -69,7 +66,6 @@ class ResultsFolder:
         return [point.cells() for point in self.periodic or self.curve.points]
 
     def part(self, name: str) -> ResultsFolder:
-        """Make the results of one of several runs, in the folder `name`. Raises `OutputError`."""
         return ResultsFolder(None if self.path is None else self.path / name)
 
     @contextmanager
@@ -89,24 +85,21 @@ class ResultsFolder:
             yield
 
     def add(self, point: Point) -> None:
-        """Append `point` to `curve.csv`."""
         with hold_signals():
             _write_row(self._curve, [format_cell(value) for value in point.cells().values()])
             self.curve = Curve((*self.curve.points, point))
 
     def put_curve(self, points: Sequence[Point]) -> None:
-        """Replace the whole curve with `points`."""
         self.curve = Curve(tuple(points))
         self.put_table("curve.csv", points)
 
     def put_oblique(self, points: Sequence[ObliquePoint]) -> None:
-        """Write oblique impacts to `oblique.csv`, unless there are none."""
         self.oblique = tuple(points)
         if points:
             self.put_table(OBLIQUE_FILE, points)
 
     def put_table(self, name: str, points: Sequence[Record | Mapping[str, Any]]) -> None:
-        """Write a table, completely or not at all. Raises `OutputError`."""
+        """Write a table, completely or not at all."""
         if self.path is not None:
             rows = [p.cells() if isinstance(p, Record) else p for p in points]
             write_table(self.path / name, rows)
@@ -125,7 +118,6 @@ class ResultsFolder:
 
     @property
     def results(self) -> RunResults:
-        """What `write` has written."""
         kind = EnsembleResults if "realisations" in self.summary else RunResults
         if self.path is not None:
             return kind(self.path)
@@ -143,7 +135,7 @@ class ResultsFolder:
     def write(self, dataset: xr.Dataset, summary: dict[str, Any]) -> None:
         """Write `results.nc`, `summary.json` and the checksums of all files.
 
-        If `results.nc` cannot be written, `summary.json` records the failure. Raises `OutputError`.
+        If `results.nc` cannot be written, `summary.json` records the failure.
         """
         self.dataset = with_coordinates(dataset)
         self.summary = json.loads(json.dumps(summary))  # as it will be read
@@ -166,10 +158,9 @@ class ResultsFolder:
 
 
 def make_folder(path: Path, remedy: str = "move it away") -> bool:
-    """Make the folder `path`, and return whether it is new.
+    """Make the folder `path`, which must be empty, and return whether it is new.
 
-    Raises `OutputError` if the folder is not empty or cannot be written. The message advises the
-    user to name another folder, or to do what `remedy` says.
+    The error advises to name another folder, or to do what `remedy` says.
     """
     with writing(path):
         new = not path.exists()
@@ -183,13 +174,11 @@ def make_folder(path: Path, remedy: str = "move it away") -> bool:
 
 
 def require_new_file(path: Path | None) -> None:
-    """Raise `OutputError` if the file `path` exists; None is accepted."""
     if path is not None and path.exists():
         raise OutputError(f"{path}: already exists and is not overwritten; name another file")
 
 
 def write_checksums(folder: Path, names: Sequence[str]) -> None:
-    """Write `SHA256SUMS` for the files `names` in `folder`. Raises `OutputError`."""
     replace_file(
         folder / CHECKSUMS, lambda to: to.write_text(checksums(folder, names), encoding="utf-8")
     )
@@ -198,8 +187,6 @@ def write_checksums(folder: Path, names: Sequence[str]) -> None:
 def write_netcdf(
     path: Path, dataset: xr.Dataset, encoding: Mapping[str, Any] | None = None
 ) -> None:
-    """Write `dataset` as netCDF, completely or not at all. Raises `OutputError`."""
-
     def write(to: Path) -> None:
         try:
             dataset.to_netcdf(to, engine="netcdf4", encoding=encoding or {})
@@ -214,19 +201,16 @@ def write_netcdf(
 
 
 def write_json(path: Path, content: Mapping[str, Any]) -> None:
-    """Write `content` as JSON, completely or not at all. Raises `OutputError`."""
     text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
     replace_file(path, lambda to: to.write_text(text, encoding="utf-8"))
 
 
 def write_table(path: Path, rows: Sequence[Mapping[str, Any]]) -> None:
-    """Write `rows`, whose keys are the columns, as CSV, completely or not at all."""
     text = table_text(rows)
     replace_file(path, lambda to: to.write_text(text, encoding="utf-8", newline=""))
 
 
 def table_text(rows: Sequence[Mapping[str, Any]]) -> str:
-    """Format `rows`, whose keys are the columns, as CSV; the text is empty without rows."""
     text = io.StringIO()
     if rows:
         table = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
@@ -236,10 +220,7 @@ def table_text(rows: Sequence[Mapping[str, Any]]) -> str:
 
 
 def replace_file(path: Path, write: Callable[[Path], object]) -> None:
-    """Let `write` fill a temporary file, and rename this file to `path`. Raises `OutputError`.
-
-    Signals are delayed until the file is renamed.
-    """
+    """Let `write` fill a temporary file, and rename it to `path`; signals wait meanwhile."""
     temporary = path.with_name(f".{path.name}.part")
     with hold_signals(), writing(path.parent):
         try:
@@ -254,7 +235,7 @@ def replace_file(path: Path, write: Callable[[Path], object]) -> None:
 
 
 def results_dataset(folder: ResultsFolder, deepest: State) -> xr.Dataset:
-    """Make the content of `results.nc`, with units: curve, unloading curves and maps."""
+    """The content of `results.nc`, with units: curve, unloading curves and maps."""
     data = curve_variables(folder.curve.points) | oblique_variables(folder.oblique)
     if folder.unloading:
         depths, curves = zip(*folder.unloading, strict=True)
@@ -280,10 +261,6 @@ def results_dataset(folder: ResultsFolder, deepest: State) -> xr.Dataset:
 def dataset_with_maps(
     data: Mapping[str, Any], deepest: State, *, pressure: str, lowering: str
 ) -> xr.Dataset:
-    """Make a dataset from the variables `data` and from maps of the deepest state.
-
-    `pressure` and `lowering` describe the maps of pressure and of plastic displacement in words.
-    """
     grid = deepest.contact.grid
     coordinates = {"x": ("x", grid.x, {"units": "m"}), "y": ("y", grid.y, {"units": "m"})}
     maps = (
@@ -299,14 +276,13 @@ def dataset_with_maps(
 
 
 def curve_variables(points: Sequence[Record], along: str = "indentation_max") -> dict[str, Any]:
-    """Make the variables of `results.nc` for the points of a curve, with the dimension `along`."""
+    """The variables of `results.nc` for the points of a curve, with the dimension `along`."""
     return {
         column.variable: column.labelled(along, values) for column, values in _by_column(points)
     }
 
 
 def _by_column(points: Sequence[Record]) -> Iterator[tuple[Column, np.ndarray[Any, Any]]]:
-    """Yield the columns of `points`, if there are any, with their values."""
     if points:
         rows = [point.cells() for point in points]
         for header, column in points[0].columns().items():
@@ -314,7 +290,7 @@ def _by_column(points: Sequence[Record]) -> Iterator[tuple[Column, np.ndarray[An
 
 
 def status_attributes(summary: Mapping[str, Any]) -> dict[str, str]:
-    """Return the attributes of `results.nc` that state how the run ended."""
+    """The attributes of `results.nc` that state how the run ended."""
     return {
         "title": summary["title"],
         "status": summary["status"],
@@ -323,10 +299,7 @@ def status_attributes(summary: Mapping[str, Any]) -> dict[str, str]:
 
 
 def case_attributes(summary: Mapping[str, Any], text: str) -> dict[str, str]:
-    """Return the attributes of `results.nc` that describe the case.
-
-    `text` is the text of the case file.
-    """
+    """The attributes of `results.nc` that describe the case; `text` is its file."""
     groups = ("model", "conventions", "derived", "surface", "surface_statistics", "versions")
     entries = {
         f"{group}_{key}": str(value) for group in groups for key, value in summary[group].items()
@@ -335,11 +308,7 @@ def case_attributes(summary: Mapping[str, Any], text: str) -> dict[str, str]:
 
 
 def oblique_variables(points: Sequence[ObliquePoint]) -> dict[str, Any]:
-    """Make the variables of `results.nc` for oblique impacts, if there are any.
-
-    The variables depend on the velocity and the angle of the impact. They are NaN for combinations
-    of velocity and angle without an impact.
-    """
+    """The variables of `results.nc` for oblique impacts, by velocity and angle; NaN in between."""
     if not points:
         return {}
     (velocity, V), (angle, theta), *others = _by_column(points)

@@ -1,10 +1,4 @@
-"""Pull-off force and sticking velocity of an adhesive pair, with their errors.
-
-The errors combine, in quadrature: the solver, the grid (difference from cells twice as large), the
-scatter between surfaces of the same kind, and the spread of library materials, all from the
-companion curves of the total error (`companions`). The pull-off force has in addition the error of
-`contact.checks.model_error`.
-"""
+"""Pull-off force and sticking velocity of an adhesive pair, with their errors (docs/error.md)."""
 
 from __future__ import annotations
 
@@ -33,11 +27,10 @@ _MOST_SOLVES = 6
 
 @dataclass(frozen=True)
 class Sticking:
-    """The velocity (m/s) up to which a pair sticks, and its error (m/s).
+    """The velocity (m/s) up to which a pair sticks; 0 if no velocity loses enough energy.
 
-    `velocity` is 0 if no velocity loses enough energy. `solver_error` is the error of the solver,
-    and `error` that of all parts (None if unknown). `lowest` is the velocity at which the energy
-    loss was last computed.
+    `error` combines `solver_error` (m/s) and all other parts; None if unknown. `lowest` is the
+    velocity at which the energy loss was last computed.
     """
 
     velocity: float
@@ -112,10 +105,10 @@ def curve_errors(
     *,
     scattered: bool,
 ) -> list[Array]:
-    """Errors of a quantity whose values are `here` on the grid of the run.
+    """Errors of a quantity, `here` on the grid of the run, due to grid, surfaces and materials.
 
-    The list has one error due to the grid, one due to scatter between surfaces (if `scattered` and
-    the bodies are rough), and one for each kind of library value with a spread.
+    One error due to the grid, one due to scatter between surfaces (if `scattered` and the bodies
+    are rough), and one for each kind of library value with a spread.
     """
     own = quantity_of(companions.own)
     errors = [np.abs(here - own)]
@@ -130,10 +123,7 @@ def curve_errors(
 
 
 def in_words(known: Mapping[str, Any], points: Sequence[Point]) -> str:
-    """State pull-off force and sticking velocity in one line; empty without adhesion.
-
-    `known` is the result of `summary_of`.
-    """
+    """Pull-off force and sticking velocity (`summary_of`) in one line; empty without adhesion."""
     adhesive = [point for point in points if point.loading_work > 0 and point.pull_off_force > 0]
     if not adhesive:
         return ""
@@ -157,7 +147,6 @@ def summary_of(pair: Sticking | None) -> dict[str, float | bool]:
 
 
 def stored(known: Mapping[str, Any]) -> Sticking | None:
-    """The inverse of `summary_of`."""
     if not known:
         return None
     error = known["sticks_below_error_m_per_s"]
@@ -205,7 +194,6 @@ class _Impact:
         return math.sqrt(2 * self.loss / mass)
 
     def uncertainty(self, mass: float) -> float:
-        """Error (m/s) of `sticks_below`."""
         velocity = self.sticks_below(mass)
         if velocity == 0:
             return math.sqrt(2 * max(self.loss, self.error, 0.0) / mass)

@@ -1,10 +1,8 @@
 """Companion curves of a run: additional curves that show how COR changes with the input.
 
-All companion curves are computed on cells twice as large as those of the run, so each of them takes
-about a fifth of the time of the run. The first companion curve has the surface and the materials of
-the run, and is compared with the run. Every other companion curve has another surface or other
-materials, and is compared with the first companion curve. COR is always compared at equal impact
-velocity. If the masses are equal, the loading work is then equal, too.
+All are computed on cells twice as large, in about a fifth of the time of the run. The first has the
+surface and the materials of the run, and is compared with the run; the others have another surface
+or other materials, and are compared with the first. COR is compared at equal impact velocity.
 """
 
 from __future__ import annotations
@@ -64,7 +62,6 @@ def _curve_of(
     method: UnloadingMethod,
     tolerance: float = _TOLERANCE,
 ) -> WorkCurve:
-    """Compute a curve as `curve_of` does, with one of `contacts` for each depth."""
     loads = [
         Load(contact, partial(_solve, contact, depth), depth)
         for contact, depth in zip(
@@ -87,10 +84,9 @@ def _solve(contact: Contact, depth: float, start: State | None) -> State:
 
 
 def half_interval(surfaces: int) -> float:
-    """Ratio of the half width of a confidence interval to the sample standard deviation.
+    """Half the 95 % interval of a mean over `surfaces`, divided by their standard deviation.
 
-    The interval is the 95 % confidence interval of the mean over `surfaces` surfaces. The ratio is
-    t/√n, with Student's t and the number n of surfaces. It is NaN for one surface.
+    Student's t/√n; NaN for one surface.
     """
     # stdtrit is the quantile of Student's t. Importing scipy.stats would take 30 MB more memory.
     from scipy.special import stdtrit
@@ -100,10 +96,7 @@ def half_interval(surfaces: int) -> float:
 
 @dataclass(frozen=True)
 class Companions:
-    """The companion curves of `case` at `depths` (m).
-
-    File names in the case are relative to `folder`.
-    """
+    """The companion curves of `case` at `depths` (m); its files are relative to `folder`."""
 
     case: Case
     folder: Path
@@ -116,19 +109,12 @@ class Companions:
 
     @cached_property
     def own(self) -> WorkCurve:
-        """Curve with the surface and the materials of the run, on cells twice as large."""
         return self._curve(self.coarse)
 
     def weaker(self, factors: Array) -> WorkCurve:
-        """The curve of the contact `coarse` with its yield limit multiplied by `factors`.
-
-        The yield limit is the yield pressure or the yield strength, whichever is given. `factors`
-        holds one factor for each of the depths.
-        """
+        """The curve of `coarse` with its yield limit times `factors`, one for each depth."""
         coarse = self.coarse
-        lowered = [
-            replace(coarse, plasticity=coarse.plasticity.scaled(factor)) for factor in factors
-        ]
+        lowered = [replace(coarse, plasticity=coarse.plasticity.scaled(f)) for f in factors]
         if all(contact == coarse for contact in lowered):
             return self.own
         return _curve_of(lowered, self.depths, self.case.unloading.method)
@@ -143,17 +129,16 @@ class Companions:
     def materials(self, work: Array) -> list[Array]:
         """Changes of COR at `work` (J) due to the spread of values from the material library.
 
-        The list has one change each for elasticity, the yield model, density and the work of
-        adhesion. A change is left out if its values have no spread, so the list may be empty. To
-        find a change, the values of both bodies are set to the low end of their spread, and then to
-        the high end. The larger of the two changes of COR is used.
+        One change for each kind of value with a spread: elasticity, yield model, work of adhesion
+        and density. The values of both bodies are set to the low, then to the high end; the larger
+        change counts.
         """
         coarse = self.coarse
         here, mass = self.own.at(work), coarse.pair.mass
         changes = []
         for ends in self.material_ends():
-            found = [self.curve(contact).at(work) for contact in ends]
-            changes.append(np.maximum(*(np.abs(values - here) for values in found)))
+            low, high = (np.abs(self.curve(contact).at(work) - here) for contact in ends)
+            changes.append(np.maximum(low, high))
         masses = [case.pair().mass for case in self._ends]
         if mass is not None and any(m != mass for m in masses):
             moved = [self.own.at(work * m / mass) for m in masses if m is not None]
@@ -167,19 +152,16 @@ class Companions:
 
     @cached_property
     def stiffness_ends(self) -> tuple[Contact, Contact]:
-        """The contact with the elasticity of both bodies at the low and at the high end."""
         low, high = (self.with_modulus_of(case) for case in self._ends)
         return low, high
 
     @cached_property
     def strength_ends(self) -> tuple[Contact, Contact]:
-        """The contact with the strengths of both bodies at the low and at the high end."""
         low, high = (self.with_yield_of(case) for case in self._ends)
         return low, high
 
     @cached_property
     def adhesion_ends(self) -> tuple[Contact, Contact]:
-        """The contact with the work of adhesion at the low and at the high end of its spread."""
         known, adhesion = self.case.library_adhesion(), self.coarse.adhesion
         if known is None or adhesion is None:
             return self.coarse, self.coarse
@@ -190,11 +172,9 @@ class Companions:
         return low, high
 
     def with_modulus_of(self, case: Case) -> Contact:
-        """The contact `coarse` with the elasticity of `case`."""
         return replace(self.coarse, pair=_with_modulus_of(self.coarse.pair, case.pair()))
 
     def with_yield_of(self, case: Case) -> Contact:
-        """The contact `coarse` with the yield model of `case`."""
         return replace(self.coarse, **_yielding(case).arguments())
 
     def curve(self, contact: Contact) -> WorkCurve:
@@ -225,7 +205,7 @@ class Companions:
 
 
 def coarser_contact(contact: Contact) -> Contact:
-    """Return `contact` on cells twice as large, without the shortest waves of its surface."""
+    """`contact` on cells twice as large, without the shortest waves of its surface."""
     coarser = coarsen(contact.surface)
     if contact.surface.provenance.get("source") == "smooth":
         coarser = smooth(coarser.grid)
@@ -235,11 +215,10 @@ def coarser_contact(contact: Contact) -> Contact:
 
 
 def _with_modulus_of(pair: Pair, other: Pair) -> Pair:
-    """Return a pair with the elasticity of `other` and the masses and radii of `pair`."""
     return Pair(
         *(
-            replace(body, youngs_modulus=its.youngs_modulus, poissons_ratio=its.poissons_ratio)
-            for body, its in ((pair.first, other.first), (pair.second, other.second))
+            replace(body, youngs_modulus=like.youngs_modulus, poissons_ratio=like.poissons_ratio)
+            for body, like in ((pair.first, other.first), (pair.second, other.second))
         )
     )
 
@@ -255,10 +234,9 @@ def _yielding(case: Case) -> Yielding:
 
 
 def moved(case: Case, end: str, body: str = "", key: str = "") -> Case:
-    """Return `case` with values from the material library at one end of their spread.
+    """`case` with values from the material library at one `end` ("low" or "high") of their spread.
 
-    `end` is "low" or "high". `body` ("first" or "second") and `key` select one value; by default
-    all values are moved.
+    `body` ("first" or "second") and `key` select one value; by default all values are moved.
     """
 
     def of(name: str, table: BodyTable) -> BodyTable:

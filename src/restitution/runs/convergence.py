@@ -1,15 +1,6 @@
 """Convergence study: one case on successively finer grids, with the discretisation error of COR.
 
-With COR f₁, f₂, f₃ on cells of size h, h/2, h/4 of the same surface,
-
-    error of f₃ = max(1.5 |f₃ − f₂|, 0.5 |f₂ − f₁|),   observed order = log₂((f₂ − f₁)/(f₃ − f₂)).
-
-Richardson extrapolation (Roache 1994, J. Fluids Eng. 116, 405–413) is not used, because the COR of
-rough contacts oscillates with h more often than it follows a power of h. Instead, convergence of
-first order is assumed. The last two grids then give |f₃ − f₂| as the error of f₃, and the first two
-grids give 0.5 |f₂ − f₁|. The estimate |f₃ − f₂| is multiplied by a safety factor of 1.5. The larger
-of the two estimates is used; it exceeded the true error in 95 % of the cases of docs/resolution.md.
-If there are only two grids, the error of f₂ is 3 |f₂ − f₁|.
+docs/resolution.md has the formula of the error and the check of it.
 """
 
 from __future__ import annotations
@@ -28,11 +19,7 @@ from restitution.curve.columns import array
 from restitution.curve.curve import largest
 from restitution.curve.point import Point
 from restitution.errors import CaseError
-from restitution.results.writer import (
-    ResultsFolder,
-    curve_variables,
-    status_attributes,
-)
+from restitution.results.writer import ResultsFolder, curve_variables, status_attributes
 from restitution.runs.companions import Companions
 from restitution.runs.depths import later_touches
 from restitution.runs.error_budget import (
@@ -45,16 +32,13 @@ from restitution.runs.error_budget import (
     widened_error,
 )
 from restitution.runs.log import RunLog, Say, ignore
-from restitution.runs.refinement import settled, with_chosen_adhesion
+from restitution.runs.refinement import with_chosen_adhesion, with_chosen_grids
 from restitution.runs.run import run_case
 
 
 @dataclass(frozen=True)
 class _OnGrid:
-    """A point on one grid, with its number on the curve of this grid.
-
-    `last_change` is the absolute change of COR since the grid before.
-    """
+    """A point on one grid, its number on this grid's curve, and |ΔCOR| since the grid before."""
 
     point: Point
     number: int
@@ -73,10 +57,7 @@ class _Spread:
 
 @dataclass(frozen=True)
 class _Grid:
-    """The curve of one grid.
-
-    `later` is the approach (m) at first touch minus that on the finest grid.
-    """
+    """The curve of one grid, which touches `later` (m) than the finest grid."""
 
     later: float
     out: ResultsFolder
@@ -100,14 +81,13 @@ def run_convergence(
 ) -> dict[str, Any]:
     """Run `case` on its grid and on grids with cells 2, 4, … times smaller; return the summary.
 
-    With `grid.refine = "auto"`, the first grid is the grid that the shallowest depth needs. The run
-    on each grid is stored in a folder `refine-<n>` of `out`. The curve of `out` is the curve of the
-    finest grid with its `discretisation_error`, and `convergence.csv` has a row for every depth and
-    grid. If a run fails, the study ends and keeps the results so far.
+    With `grid.refine = "auto"`, the first grid is the grid that the shallowest depth needs. Each
+    run is stored in a folder `refine-<n>` of `out`. The curve of `out` is that of the finest grid,
+    with its `discretisation_error`; `convergence.csv` has a row for every depth and grid. If a run
+    fails, the study ends and keeps the results so far.
 
     Depths are measured from first touch on the finest grid. A coarser grid touches later, because
-    the highest summit lies between its nodes. Its indentation, measured from its own first touch,
-    is therefore smaller than the depth.
+    the highest summit lies between its nodes.
     """
     case.require_impact()
     log, runs = RunLog(progress, warn), _Grids()
@@ -117,7 +97,7 @@ def run_convergence(
     with log.record(
         out, lambda: _write_results(case, out, runs, spread, log, unsettled) if runs else {}
     ):
-        case = settled(case, folder, log.warn)
+        case = with_chosen_grids(case, folder, log.warn)
         case = case.refined(max(case.factors()))
         if case.interface.adhesive_energy and case.interface.adhesion is None:
             case = with_chosen_adhesion(case, case.contact(folder), log.warn)
@@ -150,10 +130,7 @@ def run_convergence(
 def _spread_of(
     case: Case, folder: Path, points: Sequence[Point], log: RunLog
 ) -> dict[int, _Spread]:
-    """Errors of the points of the finest grid due to surface and materials, by their number.
-
-    Points whose loading work is not positive are left out.
-    """
+    """Errors of the impacts on the finest grid due to surface and materials, by their number."""
     reached = {k: point for k, point in enumerate(points) if point.loading_work > 0}
     if not reached:
         return {}
@@ -175,11 +152,7 @@ def _spread_of(
 
 
 def _levels(case: Case, folder: Path, grids: int) -> dict[int, float]:
-    """Choose the refinement factors; return each with the extra approach (m) of its grid.
-
-    The bodies touch first on the finest grid. On another grid they touch only when they have
-    approached each other further by the extra approach.
-    """
+    """Choose the refinement factors; return each with the extra approach (m) of its grid."""
     if grids < 2:
         raise CaseError(f"grids: a study on {grids} grid cannot show convergence; give 2 or more")
     if case.realisations > 1:
@@ -199,12 +172,10 @@ def _levels(case: Case, folder: Path, grids: int) -> dict[int, float]:
 
 
 def _pressed_less(case: Case, later: float) -> Case:
-    """Reduce the indentations of `case` by `later` (m), for a run on a coarser grid.
+    """Reduce the indentations of `case` by `later` (m), for a run on a grid that touches later.
 
-    `later` is the approach at first touch on this grid minus that on the finest grid. A run
-    measures indentations from first touch on its own grid. With the reduced indentations, the
-    bodies approach each other equally far on all grids. Indentations that do not exceed `later` are
-    left out, because at this approach the bodies do not yet touch on the coarser grid.
+    Runs measure indentations from first touch on their own grid. Indentations at which the bodies
+    do not touch yet are left out.
     """
     if case.indentation is None:
         return case  # loads and velocities do not depend on where a grid touches first
@@ -221,7 +192,6 @@ def _write_results(
     log: RunLog,
     unsettled: list[str],
 ) -> dict[str, Any]:
-    """Write the finest curve, the table of all grids and the summary; return the summary."""
     depths = _by_depth(case, runs)
     reached = [grids for grids in depths if max(runs) in grids]  # depths that the finest reached
     lacking = 0
@@ -244,10 +214,8 @@ def _write_results(
     out.put_oblique(one.oblique)
     convolutions = sum(int(p.convolutions) for grid in runs.values() for p in grid.points)
     summary = one.summary | {
-        "status": log.status,
-        "reason": log.reason,
+        **log.head(case),
         "warnings": unsettled + one.summary["warnings"],
-        "title": case.title,
         "grids": sorted(runs),
         "observed_order": None if math.isnan(order) else order,
         "seconds": log.seconds,
@@ -278,7 +246,6 @@ def _write_results(
 
 
 def _warnings(points: Sequence[Point], lacking: int) -> Iterator[str]:
-    """Yield warnings about depths of which `lacking` are not resolved, or have no grid error."""
     if lacking:
         yield (
             f"{lacking} of {len(points)} depths are not resolved: even the finest grid leaves out "
@@ -292,13 +259,9 @@ def _warnings(points: Sequence[Point], lacking: int) -> Iterator[str]:
 
 
 def _with_errors(on: _OnGrid, spread: _Spread | None) -> tuple[Point, bool]:
-    """Add three parts to the discretisation error of a point on the finest grid.
+    """Add the other parts to the discretisation error of a point (`widened_error`), and its total.
 
-    The first part is a minimum error, because differences of COR between grids may vanish by
-    chance. The second part is the effect of the waves that the finest grid leaves out of a scan.
-    The third part is the effect of nodes that would yield only on a finer grid. The total error is
-    set only if all of its parts are known. Returns the point, and whether the omitted waves change
-    COR by more than `MISSING_BAND`; the point is then marked as not resolved.
+    Returns the point, and whether the omitted waves change COR by more than `MISSING_BAND`.
     """
     if spread is None:
         return on.point, False
@@ -317,10 +280,7 @@ def _with_errors(on: _OnGrid, spread: _Spread | None) -> tuple[Point, bool]:
 
 
 def _by_depth(case: Case, runs: _Grids) -> list[dict[int, _OnGrid]]:
-    """Return the points at each depth by refinement factor, with their discretisation error.
-
-    Grids that did not reach a depth are missing from its dictionary.
-    """
+    """The points at each depth by refinement factor, with their discretisation error."""
     prescribed = case.depths()
     depths: list[dict[int, _OnGrid]] = [{} for _ in prescribed]
     for factor, grid in sorted(runs.items()):
@@ -339,11 +299,9 @@ def _by_depth(case: Case, runs: _Grids) -> list[dict[int, _OnGrid]]:
 
 
 def discretisation(values: Sequence[float]) -> tuple[float, float]:
-    """Error of the last of `values`, and observed order (see the module docstring).
+    """Error of the last of `values`, and observed order (docs/resolution.md); NaN if unknown.
 
     `values` are COR on successive grids, each with half the cell size of the grid before.
-    Error and order are NaN for too few values. The observed order is also NaN if the last three
-    values are not monotone.
     """
     if len(values) < 2:
         return math.nan, math.nan
@@ -356,12 +314,10 @@ def discretisation(values: Sequence[float]) -> tuple[float, float]:
 
 
 def observed_order(depths: Sequence[dict[int, _OnGrid]]) -> float:
-    """Observed order of convergence of COR on the last three grids.
+    """Observed order of convergence of COR on the last three grids; NaN if there is none.
 
     The differences of COR between grids are averaged over the depths (rms), because the orders of
-    single depths scatter. A depth is used only if the finest grid resolves it and all three grids
-    reach it. The result is NaN for fewer than three grids, without such depths, or if COR does not
-    change between two grids.
+    single depths scatter. Only depths that the finest grid resolves count.
     """
     factors = sorted({factor for grids in depths for factor in grids})[-3:]
     steps = np.array(

@@ -34,12 +34,10 @@ def later_touches(case: Case, folder: Path, factors: Iterable[int]) -> dict[int,
 
 
 def load_to(case: Case, contact: Contact, depth: float, start: State | None = None) -> State:
-    """Load `contact` to `depth`, one of `case.depths()`.
+    """Load `contact` to `depth`, one of `case.depths()`: m, N, m/s or Pa.
 
-    Depending on the case, `depth` is an indentation (m), a force (N), an impact velocity (m/s) or a
-    nominal pressure (Pa). `start` is the state at a shallower depth. It saves time, but it is not
-    used if a pressure is prescribed. Raises the errors of `solve`, `solve_at_force`,
-    `solve_at_velocity` or `solve_at_pressure`.
+    `start` is the state at a shallower depth; it is not used if a pressure is prescribed. Errors
+    name the keys of the case file.
     """
     with naming_keys(case.prescribed, lambda: needed_edges(contact, deepest_indentation(case))):
         if case.pressure is not None:
@@ -56,9 +54,8 @@ def loads_of(
 ) -> Iterator[Load]:
     """The loads to every depth of `case`, from the shallowest to the deepest.
 
-    `contact` is the contact on the grid of the deepest depth. File names in the case are relative
-    to `folder`. `unloaded` is the number of unloading curves, by default that of the case. They
-    begin at evenly spaced depths, including the deepest.
+    `contact` is the contact on the grid of the deepest depth. `unloaded` is the number of unloading
+    curves, by default that of the case, at evenly spaced depths including the deepest.
     """
     factors, depths = case.factors(), case.depths()
     # A coarse grid first touches at a larger approach than the finest grid. The extra approach is
@@ -77,17 +74,15 @@ def loads_of(
 
 
 class CaseUnloading(Unloading):
-    """Unloading as a case asks for it; errors name the keys of the case file."""
+    """Unloading as a case prescribes it; errors name the keys of the case file."""
 
     @classmethod
     def of_case(cls, case: Case) -> CaseUnloading:
-        """Take the table `[unloading]` of `case`."""
         table = case.unloading
         return cls(table.method, table.steps, table.restitution_error)
 
     def of(
         self, state: State, known: Sequence[State], *, always: bool
     ) -> tuple[Collision, Sequence[State]]:
-        """As `Unloading.of`."""
         with naming_keys():
             return super().of(state, known, always=always)

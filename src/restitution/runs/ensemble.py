@@ -31,12 +31,14 @@ from restitution.runs.error_budget import (
 from restitution.runs.log import RunLog, Say, ignore
 from restitution.runs.oblique import mean_oblique
 from restitution.runs.periodic import run_periodic
-from restitution.runs.refinement import settled
+from restitution.runs.refinement import with_chosen_grids
 from restitution.runs.result_warnings import too_coarse_for_adhesion, unresolved
 from restitution.runs.run import run_case
 
 # Fields that combine only surfaces on which an impact has this maximum indentation.
 _OF_IMPACTS = ("restitution", "impact_velocity", "restitution_error", "model_error", "sticks")
+# Keys of `summary.json` that the run on one surface gives.
+_OF_ONE = ("model", "materials", "conventions", "derived", "device", "kernels", "versions")
 # Fields of an ensemble's curve that are not means, and the functions that combine the values of
 # the surfaces. Flags are not listed: they are true if they are true for all surfaces.
 _WORST: dict[str, Callable[[list[float]], float]] = {
@@ -59,15 +61,11 @@ def run_realisations(
 ) -> dict[str, Any]:
     """Run `case` on each of its surfaces, and return the summary.
 
-    A periodic case is run by `run_periodic`. A single surface is run by `run_case` alone. If there
-    are several surfaces, the run on surface n (n = 1, 2, …) is stored in a folder
-    `realisation-<n>`, and the curve of `out` contains the means (`mean_points`). The seed of
-    surface n is the seed of the case plus n − 1. For a scan without a seed, `place` (the part of
-    the scan that is used) increases in the same way. If the run on a surface fails, its error is
-    recorded and the other runs continue. If all runs fail, the first error is raised. If the first
-    surface cannot be made, for example because the scan is missing, no run starts. With
-    `grid.refine = "auto"`, the first surface decides the grid of each depth for all surfaces
-    (`refinement`).
+    With several surfaces, the run on surface n (n = 1, 2, …) is stored in a folder
+    `realisation-<n>`, and the curve of `out` contains the means (`mean_points`). Its seed is that
+    of the case plus n − 1 (of a scan without a seed, its `place`). A surface that fails is
+    recorded, and the others continue; if all fail, the first error is raised. With `grid.refine =
+    "auto"`, the first surface decides the grids of all.
     """
     if case.periodic:
         return run_periodic(case, text, folder, out, progress, warn)
@@ -82,8 +80,6 @@ def run_realisations(
 
 
 class _Ensemble:
-    """The results of an ensemble so far."""
-
     def __init__(
         self, case: Case, text: str, folder: Path, out: ResultsFolder, log: RunLog
     ) -> None:
@@ -97,9 +93,8 @@ class _Ensemble:
         self.one_sticking: Sticking | None = None  # with the errors of grid and materials
 
     def compute(self) -> None:
-        """Run the case on every surface, and estimate the errors due to grid and materials."""
         self.case.realisation(0).surface(self.folder)  # end here if the scan cannot be read
-        self.case = settled(self.case, self.folder, self.log.warn)
+        self.case = with_chosen_grids(self.case, self.folder, self.log.warn)
         for number in range(self.case.realisations):
             self._run(number)
         self._add_errors()
@@ -138,11 +133,7 @@ class _Ensemble:
             self.ended.append({"realisation": number + 1, "depths": depths, "reason": reason})
 
     def _add_errors(self) -> None:
-        """Estimate the errors due to grid and materials, on one surface.
-
-        This is the surface whose curve has the largest number of depths. The scatter between
-        surfaces follows from the ensemble itself.
-        """
+        """Estimate the errors due to grid and materials, on the surface with the most depths."""
         if not self.parts or not self.case.total_error:
             return
         number = max(self.parts, key=lambda k: len(self.parts[k].curve.points))
@@ -183,9 +174,7 @@ class _Ensemble:
         points = self.out.curve.points
         whole = [point for part in self.parts.values() for point in part.curve.points]
         return {
-            "title": self.case.title,
-            "status": self.log.status,
-            "reason": self.log.reason,
+            **self.log.head(self.case),
             "realisations_asked": self.case.realisations,
             "realisations": self.ended,
             "confidence": CONFIDENCE,
@@ -193,18 +182,7 @@ class _Ensemble:
             "depths_computed": len(points),
             "warnings": [*self.log.warnings, *self._result_warnings(whole)],
             "sticking": summary_of(mean_of(list(self.sticking.values()), self.one_sticking)),
-            **{
-                key: one[key]
-                for key in (
-                    "model",
-                    "materials",
-                    "conventions",
-                    "derived",
-                    "device",
-                    "kernels",
-                    "versions",
-                )
-            },
+            **{key: one[key] for key in _OF_ONE},
             "diagnostics": {
                 f"largest_{name}": largest(whole, name)
                 for name in ("residual", "restitution_error")
@@ -215,7 +193,6 @@ class _Ensemble:
         }
 
     def _result_warnings(self, whole: list[Point]) -> Iterator[str]:
-        """Yield the warnings about the points of all surfaces (`whole`) and about their means."""
         means = self.out.curve.points
         yield from unresolved(whole)
         grid = self.case.realisation(0).contact(self.folder).grid
@@ -238,18 +215,14 @@ class _Ensemble:
 
 
 def mean_points(curves: Sequence[Sequence[Point]], errors: Sequence[Point] = ()) -> list[MeanPoint]:
-    """Make the curve of an ensemble: for each depth, a point of means over the surfaces.
+    """Make the curve of an ensemble: at each depth, means over the surfaces that reached it.
 
-    A point is computed from the surfaces that reached its depth. Most fields are means over these
-    surfaces. `residual`, `model_error` and `refine` are the largest values, `median_patch_nodes` is
-    the smallest value and `convolutions` the sum. Flags are true if they are true for all of these
-    surfaces. The 95 % confidence interval of the mean COR is mean ± t s/√n with Student's t, the
-    sample standard deviation s and the number n of surfaces, clipped to [0, 1]. With one surface,
-    s and the ends are NaN.
+    Exceptions are in `_WORST`; flags are true if they are true for all of these surfaces. The 95 %
+    confidence interval of the mean COR is mean ± t s/√n, clipped to [0, 1]; NaN for one surface.
 
-    `errors` are the points of one surface. Their errors due to grid and materials are copied to the
-    means. `surface_scatter` is half of the width of the confidence interval. If only one surface
-    reached a depth, the total error of this depth stays unknown.
+    `errors` are the points of one surface, whose errors due to grid and materials are taken over.
+    `surface_scatter` is half of the width of the confidence interval. The total error of a depth
+    that only one surface reached stays unknown.
     """
     count = max(map(len, curves), default=0)
     alone: list[Point | None] = [

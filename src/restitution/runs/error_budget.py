@@ -1,40 +1,7 @@
 """The total error of every COR of a run, due to solver, grid, surface and materials.
 
-    total² = restitution_error² + discretisation_error² + surface_scatter² + material_error²
-
-A row holds the results of one depth. Errors are differences from the exact COR of the pair at the
-impact velocity of the row. The exact COR is the mean over surfaces of the same kind, on a grid that
-resolves all waves of the surface. The discretisation error has three parts:
-
-    discretisation_error² = ΔCOR² [1 + (1.5 n)²] + (q² D)² + (s f)²,   n = ln(S/S_h)/ln(S_h/S_2h).
-
-ΔCOR is the change of COR if the cells are twice as large and the surface loses its shortest octave
-of waves (`companions`). S is the rms slope of the scan. S_h is the rms slope on cells of size h,
-the cell size of the run, and S_2h is the rms slope on cells of size 2h. The waves that the grid
-leaves out change ln S by n times as much as the shortest octave that the grid resolves. The formula
-assumes that these waves change COR by n ΔCOR. It multiplies n ΔCOR by a safety factor of 1.5. For
-generated surfaces n = 0 and S = S_h, because their definition includes the shortest wave.
-
-D is the change of COR on cells of size 2h if the yield pressure is multiplied by p/p_S. Waves that
-a grid lacks raise the local pressure. Therefore, a contact may yield on a finer grid although it is
-elastic on cells of size h and 2h. ΔCOR then vanishes, and only D accounts for this yielding. p is
-the mean pressure in the contact area on cells of size h. p_S estimates this pressure with all
-waves:
-
-    p_S² = p² + (E*/2)² (S² − S_2h²).
-
-E* S/2 is the mean pressure in the contact area of an elastic rough surface with the rms slope S at
-small loads (S. Hyun et al., Phys. Rev. E 70 (2004) 026117). p_S/p is at most (S/S_2h)². q is the
-elastic energy stored in loading, divided by the sum of this energy and the plastic work. The factor
-q² reduces D if nodes already yield, because these nodes yield on a finer grid, too.
-
-f is the usual error of COR for the number of nodes in the median patch. Half of the contact nodes
-lie in patches of at least the size of the median patch (docs/resolution.md). s is the fraction of f
-that is added. s is large if the median patch has only a few nodes. Otherwise s is small, and its
-only purpose is to keep the error from vanishing by chance.
-
-The constants of these formulas were chosen on about 1000 random cases, 30 of them adhesive, and
-checked on other cases (docs/error.md).
+docs/error.md has the formulas (n, S, S_h, S_2h, q, D, p, p_S), and how often the error holds.
+Their constants were chosen on about 1000 random cases, 30 of them adhesive.
 """
 
 from __future__ import annotations
@@ -87,12 +54,10 @@ NOT_INCLUDED = (
 
 @dataclass(frozen=True)
 class Band:
-    """The waves that a grid leaves out of a scan.
+    """The waves that a grid leaves out of a scan (docs/error.md).
 
-    `octaves` is n in the formula of the module docstring, 0 if no wave is left out. `slope` and
-    `coarser_slope` are S and S_2h in the same formula. `removed_slope` is the rms slope of the
-    omitted waves, divided by the rms slope of the scan. `pixel` is the spacing (m) that resolves
-    them.
+    `octaves` is n (0 if none is left out), `slope` S and `coarser_slope` S_2h. `removed_slope` is
+    the rms slope of the omitted waves divided by S. `pixel` is the spacing (m) that resolves them.
     """
 
     octaves: float
@@ -103,7 +68,6 @@ class Band:
 
     @classmethod
     def of(cls, surface: Surface) -> Band:
-        """Describe the waves that `surface` lost when it was resampled to its grid."""
         provenance = surface.provenance
         removed = float(provenance.get("removed_slope", 0.0))
         pixel = max(float(provenance.get(f"pixel_{axis}_m", 0.0)) for axis in "xy")
@@ -115,7 +79,7 @@ class Band:
         return cls(octaves, slope * math.exp(beyond), coarser, removed, pixel)
 
     def pressure_ratio(self, force: float, area: float, contact_modulus: float) -> float:
-        """Ratio p/p_S of the module docstring, for a force (N) on a contact area (m²)."""
+        """Ratio p/p_S for a force (N) on a contact area (m²)."""
         if self.slope <= self.coarser_slope:
             return 1.0
         smallest = (self.coarser_slope / self.slope) ** 2
@@ -126,11 +90,7 @@ class Band:
 
 
 def unseen_yield(companions: Companions, waves: Band, points: Sequence[Point]) -> Array:
-    """Error of COR of `points` due to nodes that would yield only on a finer grid.
-
-    This is the term q² D of the formula at the top of this file. `waves` describes the waves that
-    the grid of the rows leaves out.
-    """
+    """Error q² D of COR of `points` due to nodes that would yield only on a finer grid."""
     work = array(points, "loading_work")
     stored, plastic = array(points, "stored_energy"), array(points, "plastic_work")
     E_star = companions.coarse.pair.contact_modulus
@@ -146,12 +106,10 @@ def unseen_yield(companions: Companions, waves: Band, points: Sequence[Point]) -
 def grid_error(
     change: Array, unseen: Array, work: Array, points: Sequence[Point], octaves: float
 ) -> tuple[Array, Array]:
-    """Discretisation error of COR of each row, and how much of it is due to omitted waves.
+    """Discretisation error of COR of each point, and how much of it is due to omitted waves.
 
-    Omitted waves are waves of the scan that are too short for the grid.
-
-    `change` is COR minus its value on cells twice as large, at the loading work `work` (J).
-    `unseen` is the result of `unseen_yield` (q² D), and `octaves` is `Band.octaves` (n).
+    `change` is COR minus its value on cells twice as large, at the loading work `work` (J),
+    `unseen` the result of `unseen_yield`, and `octaves` `Band.octaves`.
     """
     near = np.sqrt(_smoothed(change**2, work, _NEAR_GRID))
     band = _BAND * octaves * near
@@ -164,11 +122,8 @@ def widened_error(
 ) -> tuple[float, float]:
     """Widen `error`, the discretisation error of COR from a convergence study.
 
-    Three errors are added to it in quadrature: a minimum error (`_floor`), the error `unseen` due
-    to nodes that would yield only on a finer grid (see `unseen_yield`), and the error due to waves
-    of the scan that the grid leaves out. The last error follows from `last_change`, the difference
-    of COR between the last two grids, and from `octaves` (`Band.octaves`). Returns the sum and the
-    error due to the waves left out.
+    `last_change` is the difference of COR between the last two grids; see `grid_error`. Returns the
+    sum and the error due to the waves left out.
     """
     band = _BAND * octaves * last_change
     return math.hypot(error, band, unseen, _floor(point)), band
@@ -177,12 +132,9 @@ def widened_error(
 def scatter(restitution: Array, work: Array) -> Array:
     """Error of COR if one surface represents the mean of all surfaces of its kind.
 
-    The error is the difference between the COR of this surface and the mean COR of the computed
-    surfaces, plus half the width of the 95 % confidence interval of this mean.
-
-    `restitution` has a row for each surface, the surface of the run first, and a column for each
-    value of `work` (J). The errors are NaN if the curve of this surface or the curves of all others
-    are missing (NaN).
+    The difference from the mean of `restitution`, plus half the width of the 95 % confidence
+    interval of this mean. `restitution` has a row for each surface, that of the run first, and a
+    column for each value of `work` (J); NaN if a curve is missing.
     """
     known = restitution[np.isfinite(restitution).all(axis=1)]
     if len(known) < 2:
@@ -200,11 +152,9 @@ def spread_errors(
     scattered: bool = True,
     parts: list[MaterialPart] | None = None,
 ) -> dict[str, Array]:
-    """Errors of COR at `work` (J) due to the surface and to the spread of library materials.
+    """`surface_scatter` and `material_error` of COR at `work` (J), as far as the case has them.
 
-    The keys are `surface_scatter` and `material_error`. `surface_scatter` is absent if the case has
-    no roughness or `scattered` is false. `material_error` is absent without library values. The
-    contributions of the library values are appended to `parts`.
+    The contributions of the library values are appended to `parts`.
     """
     case = companions.case
     columns = {}
@@ -223,11 +173,10 @@ def spread_errors(
 class ErrorBudget:
     """Adds the errors due to grid, surface and materials, and their total, to points of a run.
 
-    Points whose loading work is not positive stay unchanged, because no impact has their depth. The
-    total error of a point is set only if all of its parts are known. `points` has the errors so
-    far, and `band` the errors due to waves that the grid leaves out, one for each impact. `finest`
-    holds the companion curves of the finest grid. The contributions of the library values are
-    appended to `parts`. If `scattered` is false, the scatter between surfaces is left out.
+    Points without an impact stay unchanged. The total error of a point is set only if all of its
+    parts are known. `points` has the errors so far, and `band` the errors due to waves that the
+    grid leaves out, one for each impact. `parts` receives the contributions of library values.
+    Without `scattered`, the scatter between surfaces is left out.
     """
 
     def __init__(
@@ -247,7 +196,6 @@ class ErrorBudget:
 
     @property
     def finest(self) -> Companions:
-        """Companion curves of the finest grid."""
         return self._companions[max(self._companions)]
 
     def add(self, surface: Surface) -> None:
@@ -289,12 +237,7 @@ class ErrorBudget:
 
 
 def band_warning(surface: Surface, band_errors: Sequence[float]) -> Iterator[str]:
-    """Yield a warning if COR changes due to waves of the scan that are too short for the grid.
-
-    `band_errors` are the estimated changes of COR, one for each depth. The warning is given if one
-    of them exceeds `MISSING_BAND`. It states which grid would resolve these waves, and whether such
-    a grid is too large.
-    """
+    """Yield a warning if a change of COR due to omitted waves exceeds `MISSING_BAND`."""
     lacking = [error for error in band_errors if error > MISSING_BAND]
     if not lacking:
         return
@@ -316,7 +259,6 @@ def band_warning(surface: Surface, band_errors: Sequence[float]) -> Iterator[str
 def total_error_summary(
     case: Case, points: Sequence[Point], parts: Sequence[MaterialPart] = ()
 ) -> dict[str, object]:
-    """The entries of `summary.json` about the total error of `points` and its `parts`."""
     known = largest(points, "total_error")
     values = as_rows(parts)
     return {
@@ -329,10 +271,7 @@ def total_error_summary(
 
 
 def interrupted_errors(case: Case, points: Sequence[Point], status: str) -> Iterator[str]:
-    """Yield a warning if rows lack their total error because the run was interrupted.
-
-    `status` says how the run ended (`RunLog.status`).
-    """
+    """Yield a warning if points lack their total error because the run was interrupted."""
     missing = sum(math.isnan(point.total_error) for point in points)
     if case.total_error and status == "interrupted" and missing:
         yield (
@@ -367,18 +306,14 @@ def steps(case: Case) -> int:
 
 
 def _floor(point: Point) -> float:
-    """Minimum discretisation error of a row: the product of s and f (see the top of this file)."""
+    """Minimum discretisation error: the usual error for this number of nodes, times `_SHARE`."""
     nodes = max(point.median_patch_nodes, 1.0)
     expected = math.exp(np.interp(math.log(nodes), np.log(_PATCH_NODES), np.log(_PATCH_ERROR)))
     return expected * float(np.interp(nodes, _FEW_NODES, _SHARE))
 
 
 def _smoothed(values: Array, work: Array, near: float) -> Array:
-    """Smooth `values` over the loading work (J); all NaN if any value is NaN.
-
-    The result is a weighted mean with the weights exp(−Δ/near). Here Δ is the difference of
-    ln(work) between two values, and `near` is the width of the smoothing in ln(work).
-    """
+    """Weighted mean with the weights exp(−Δ/near), Δ the difference of ln(work)."""
     L = np.log(work)
     weights = np.exp(-np.abs(L[:, None] - L) / near)
     return np.asarray(weights @ values / weights.sum(axis=1))

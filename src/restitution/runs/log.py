@@ -3,23 +3,36 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from restitution.errors import RestitutionError, one_line
+from restitution.numerics.convolution.device import current
+from restitution.numerics.kernels import instruction_set
 from restitution.results.interruption import hold_signals
 from restitution.results.writer import ResultsFolder
 
 if TYPE_CHECKING:
+    from restitution.case.case import Case
+    from restitution.curve.periodic import PeriodicPoint
+    from restitution.curve.point import Point
     from restitution.runs.material_advice import MaterialPart
 
 Say = Callable[[str], None]
 
 
-def ignore(_: str) -> None:
-    """Ignore a message."""
+def ignore(_: str) -> None: ...
+
+
+def solved_with(points: Sequence[Point | PeriodicPoint]) -> dict[str, Any]:
+    """The entries of `summary.json` about the solver."""
+    return {
+        "device": current().name,
+        "kernels": instruction_set,
+        "convolutions": sum(int(point.convolutions) for point in points),
+    }
 
 
 @dataclass
@@ -27,9 +40,8 @@ class RunLog:
     """The log of one run, or of several runs of one case.
 
     `progress` is called with a few words after every step, and `tell` with every warning.
-    `warnings` holds the warnings so far, which are stored with the results. `material_parts` holds
-    the contributions of library values to the material error. `status` and `reason` say how the run
-    ended.
+    `warnings` and `material_parts` (contributions of library values to the material error) are
+    stored with the results; `status` and `reason` say how the run ended.
     """
 
     progress: Say = ignore
@@ -46,24 +58,22 @@ class RunLog:
         """Time since the start (s)."""
         return round(time.perf_counter() - self.began, 3)
 
+    def head(self, case: Case) -> dict[str, str]:
+        """The entries of `summary.json` that say how the run ended."""
+        return {"title": case.title, "status": self.status, "reason": self.reason}
+
     def warn(self, warning: str) -> None:
-        """Issue a warning, and store it with the results."""
         self.warnings.append(warning)
         self.tell(warning)
 
     def progress_of(self, name: str) -> Say:
-        """Return a `progress` function for one of several runs.
-
-        The function puts the `name` of the run before each message.
-        """
+        """Return a `progress` that puts `name`, one of several runs, before each message."""
         return lambda words: self.progress(f"{name}, {words}")
 
     def warnings_of(self, part: ResultsFolder) -> Say:
-        """Return a `warn` function for one of several runs.
+        """Return a `warn` that passes on the warnings before the first result of `part`.
 
-        The function passes on the warnings about the input, that is, those issued before the run
-        has its first result. It drops later warnings, because the summary of all runs replaces
-        them.
+        Later warnings are dropped, because the summary of all runs replaces them.
         """
 
         def say(warning: str) -> None:
@@ -74,11 +84,9 @@ class RunLog:
 
     @contextmanager
     def record(self, out: ResultsFolder, keep: Callable[[], dict[str, Any]]) -> Iterator[None]:
-        """Record how the `with` body ends, and let `keep` write the results.
+        """Record how the `with` body ends, and let `keep` write the results and return the summary.
 
-        `keep` returns the summary. It is stored in the attribute `summary`, and the warnings in it
-        are issued. If nothing was computed, the summary is empty and the folder is removed. Errors
-        of the body are raised again.
+        The warnings in the summary are issued. If it is empty, the folder is removed.
         """
         try:
             yield

@@ -31,7 +31,7 @@ _MENTIONED = 0.3
 
 @dataclass(frozen=True)
 class MaterialPart:
-    """Largest change of COR due to the spread of one library value, over the rows of a run.
+    """Largest change of COR due to the spread of one library value, over the points of a run.
 
     `key` is the key of the case file, such as "first.hardness"; `low` and `high` are in SI units.
     """
@@ -56,15 +56,14 @@ class MaterialPart:
 
 def largest_parts(parts: Iterable[MaterialPart]) -> list[MaterialPart]:
     """One contribution for each key, the largest over the grids of a run, in decreasing order."""
-    found: dict[str, MaterialPart] = {}
+    largest: dict[str, MaterialPart] = {}
     for part in parts:
-        if part.error > 0 and part.error >= found.get(part.key, part).error:
-            found[part.key] = part
-    return sorted(found.values(), key=lambda part: -part.error)
+        if part.error > 0 and part.error >= largest.get(part.key, part).error:
+            largest[part.key] = part
+    return sorted(largest.values(), key=lambda part: -part.error)
 
 
 def as_rows(parts: Iterable[MaterialPart]) -> list[dict[str, Any]]:
-    """The contributions for `summary.json`."""
     return [asdict(part) for part in largest_parts(parts)]
 
 

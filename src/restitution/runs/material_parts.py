@@ -1,12 +1,11 @@
 """How much each value of the material library contributes to the material error of a run.
 
-The companion curves behind the material error move all elastic values at once, all strengths, the
-work of adhesion, or the masses. They also give the contribution of one value, without more curves:
+The companion curves of the material error move values of one kind together. They also give the
+contribution of one value:
 
-* Young's moduli and Poisson's ratios act only through the contact modulus E*. The change of COR is
+* Young's moduli and Poisson's ratios act through the contact modulus E*. The change of COR is
   interpolated linearly in ln E* between the run and the end of the spread.
 * Only the softer body yields, so one strength usually moves the yield model as all of them do.
-  Otherwise this strength needs a curve of its own.
 * A density changes the loading work at the velocity of the run, which shifts the curve.
 """
 
@@ -57,7 +56,6 @@ def _change(companions: Companions, work: Array, body: str, key: str) -> Array:
 
 
 def _changes(companions: Companions, work: Array, body: str, key: str) -> Iterator[Array]:
-    """Yield the change of COR with the value `body`.`key` at each end of its spread."""
     here, coarse = companions.own.at(work), companions.coarse
     for end in ENDS:
         case = moved(companions.case, end, body, key)

@@ -8,14 +8,14 @@ from contextlib import contextmanager
 from dataclasses import replace
 
 from restitution.contact.checks.edge import EdgeReachedError, edge_reached
-from restitution.contact.checks.findings import CLEANING as CLEANING
-from restitution.contact.checks.findings import Finding, ImpossibleSlope, SteepSurface
+from restitution.contact.checks.findings import ImpossibleSlope, SteepSurface
 from restitution.contact.checks.inputs import doubtful, impossible
 from restitution.contact.checks.resolution import predicted_radius
 from restitution.contact.checks.scans import scan_findings, too_steep
 from restitution.contact.cohesive.law import Cohesive
 from restitution.contact.contact import Contact
 from restitution.contact.jkr.limit import JKRLimit, hysteresis_ratio
+from restitution.display import quantity
 from restitution.errors import DomainError, NotConvergedError
 from restitution.surfaces import Surface
 from restitution.theory import JKR
@@ -27,10 +27,6 @@ _NEARLY_JKR = 0.9
 # the grid.
 _FAR_BEYOND = 2.0
 _KEYS = {"force": "load", "velocity": "impact"}  # argument of a solver: key of the case file
-
-
-def message(finding: Finding, prescribed: str = "indentation") -> str:
-    return finding.text(prescribed)
 
 
 def require_possible(contact: Contact, indentation: float) -> None:
@@ -56,7 +52,7 @@ def surface_warnings(surface: Surface, reduced_radius: float = math.inf) -> list
     if isinstance(steep, ImpossibleSlope):
         findings = [steep if isinstance(one, SteepSurface) else one for one in findings]
     notice = surface.provenance.get("notice")
-    return [*map(message, findings), *([] if notice is None else [str(notice)])]
+    return [finding.text() for finding in findings] + ([] if notice is None else [str(notice)])
 
 
 def failure_at_edge(contact: Contact, indentation: float, prescribed: str) -> str | None:
@@ -83,10 +79,10 @@ def no_range(contact: Contact) -> list[str]:
     lost = hysteresis_ratio(tabor)
     if lost > _NEARLY_JKR:
         return []
-    needed = 1e9 * Cohesive(w, z0).coarsest_spacing(pair)
+    needed = quantity(Cohesive(w, z0).coarsest_spacing(pair), "m")
     return [
         'interface.adhesion is not given, and the grid is too coarse for "cohesive" (it needs '
-        f'a spacing of {needed:.4g} nm), so "jkr" is used, which neglects the range '
+        f'a spacing of {needed}), so "jkr" is used, which neglects the range '
         f"of the attraction: smooth bodies with this Tabor parameter ({tabor:.2g}) dissipate "
         f"{lost:.2g} times the energy that JKR predicts and have {math.sqrt(lost):.2g} times its "
         "sticking velocity, and rough bodies dissipate even less; model_error includes this "

@@ -1,7 +1,6 @@
 """The oblique impacts of a case, from the curves of its run (`impacts.oblique`).
 
-The run has a depth for the normal velocity V cos θ of each impact, and every depth is unloaded. So
-the maximum indentation of each impact is a computed depth, with a computed unloading curve.
+The run has a depth, with an unloading curve, for the normal velocity V cos θ of each impact.
 """
 
 from __future__ import annotations
@@ -31,7 +30,6 @@ _SAME = 1e-3  # largest relative difference of normal velocities that count as e
 
 
 def is_oblique(case: Case) -> bool:
-    """Whether `case` asks for oblique impacts."""
     return case.impact is not None and case.impact.oblique
 
 
@@ -40,8 +38,7 @@ def oblique_points(
 ) -> tuple[list[ObliquePoint], str | None]:
     """Compute the oblique impacts of `case` from the curve and the unloading curves of `out`.
 
-    Returns a point for each impact. The second value is a warning that names the
-    impacts that could not be computed, or None if all were computed.
+    The second result is a warning that names the impacts without a result, or None.
     """
     impact, friction = case.impact, case.interface.friction
     assert impact is not None  # the case is oblique
@@ -86,7 +83,6 @@ def mean_oblique(curves: Sequence[Sequence[ObliquePoint]]) -> list[MeanObliquePo
 
 
 def _force(case: Case, surface: Surface, out: ResultsFolder) -> StoredForce:
-    """Make a force law from the curve and the unloading curves that a run has computed so far."""
     curves = [
         UnloadingCurve(start, *np.array(points)[::-1].T)
         for start, points in sorted(out.unloading, key=itemgetter(0))
@@ -110,9 +106,9 @@ def _point(
 ) -> ObliquePoint:
     """Compute one impact.
 
-    If a point of the curve has nearly the prescribed normal velocity, the impact is computed at the
-    velocity of this point. The error of the normal restitution is then the total error of this
-    point.
+    If a point of the curve has nearly the prescribed normal velocity, the impact is computed at its
+    velocity, with its total error: a run reaches the prescribed velocities only within the error of
+    the loading work.
     """
     normal = velocity * math.cos(angle)
     nearest = min(curve.points, key=lambda point: _apart(point, normal))
@@ -142,10 +138,7 @@ def _point(
 
 
 def _apart(point: Point, normal: float) -> float:
-    """Relative difference between the velocity of `point` and `normal` (m/s).
-
-    It is infinite if the velocity of `point` is unknown.
-    """
+    """Relative difference between the velocity of `point` and `normal` (m/s); inf if unknown."""
     apart = abs(point.impact_velocity / normal - 1)
     return math.inf if math.isnan(apart) else apart
 
@@ -153,9 +146,8 @@ def _apart(point: Point, normal: float) -> float:
 def _errors(law: StoredForce, collision: ObliqueCollision, error: float) -> dict[str, float]:
     """Errors of the tangential results, which include the `error` of the normal restitution.
 
-    If the normal restitution changes by Δe, the friction impulse changes by at most µ m* V_n Δe.
-    This is its change if the whole contact slides. µ is the coefficient of friction, m* the reduced
-    mass, and V_n the normal velocity before the impact.
+    If the normal restitution changes by Δe, the friction impulse changes by at most µ m* V_n Δe:
+    its change if the whole contact slides.
     """
     normal_velocity = collision.velocity * math.cos(collision.angle)
     impulse = collision.friction * error * (law.pair.mass or math.nan) * normal_velocity

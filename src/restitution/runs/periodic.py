@@ -18,13 +18,9 @@ from restitution.contact.state import State
 from restitution.curve.follow import loaded
 from restitution.curve.periodic import Histogram, PeriodicPoint
 from restitution.errors import NotConvergedError
-from restitution.numerics.convolution.device import current
-from restitution.numerics.kernels import instruction_set
 from restitution.results.interruption import hold_signals
 from restitution.results.maps import DepthMaps, write_maps
-from restitution.results.periodic import (
-    periodic_dataset,
-)
+from restitution.results.periodic import periodic_dataset
 from restitution.results.schema import PERIODIC_FILE
 from restitution.results.writer import (
     ResultsFolder,
@@ -33,7 +29,7 @@ from restitution.results.writer import (
     versions,
 )
 from restitution.runs.depths import loads_of
-from restitution.runs.log import RunLog, Say, ignore
+from restitution.runs.log import RunLog, Say, ignore, solved_with
 from restitution.runs.messages import input_warnings, require_possible
 from restitution.runs.result_warnings import unresolved
 from restitution.surfaces import describe
@@ -57,8 +53,7 @@ def run_periodic(
 ) -> dict[str, Any]:
     """Run the periodic `case` and return the summary; the arguments are those of `run_case`.
 
-    A depth that cannot be solved ends the curve. Its error is raised again after the results so far
-    are written.
+    A depth that cannot be solved ends the curve; its error is raised after the results are written.
     """
     log, deepest = RunLog(progress, warn), list[State]()
     histograms: list[Histogram] = []
@@ -91,7 +86,7 @@ def run_periodic(
 
 
 def _edges_of_scans(case: Case) -> list[str]:
-    """Return a warning for each scan without `extend`, because its opposite edges do not match."""
+    """A warning for each scan without `extend`, because its opposite edges do not match."""
     return [
         f"roughness.file: the opposite edges of {part.file} do not match, so the surface has steps "
         'along the edges of the grid; set roughness.extend = "twin" for a periodic surface with '
@@ -102,7 +97,6 @@ def _edges_of_scans(case: Case) -> list[str]:
 
 
 def _stiffness(state: State) -> float:
-    """Stiffness (Pa/m) of `state`; NaN if it is not defined."""
     with suppress(NotConvergedError):
         return normal_stiffness(state)
     return math.nan
@@ -115,12 +109,9 @@ def _write_results(
     deepest: State,
     histograms: Sequence[Histogram],
 ) -> dict[str, Any]:
-    """Write the results of the case `read` and its text; return the summary."""
     (case, text), contact, points = read, deepest.contact, out.periodic
     summary: dict[str, Any] = {
-        "title": case.title,
-        "status": log.status,
-        "reason": log.reason,
+        **log.head(case),
         "depths_asked": len(case.depths()),
         "depths_computed": len(points),
         "warnings": [*log.warnings, *unresolved(points)],
@@ -137,9 +128,7 @@ def _write_results(
         "surface": dict(contact.surface.provenance),
         "surface_statistics": describe(contact.surface),
         "diagnostics": {"largest_residual": max(point.residual for point in points)},
-        "device": current().name,
-        "kernels": instruction_set,
-        "convolutions": sum(int(point.convolutions) for point in points),
+        **solved_with(points),
         "seconds": log.seconds,
         "versions": versions(),
     }

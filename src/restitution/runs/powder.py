@@ -63,7 +63,6 @@ def _filled(nodes: int, spacing: float, fastest: str) -> dict[str, Any]:
 
 
 def _length(case: Case) -> float:
-    """The correlation length (m) of the roughness."""
     (part,) = case.roughness
     assert isinstance(part, GeneratedRoughness)
     assert part.correlation_length is not None  # the template gives one

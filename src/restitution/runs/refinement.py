@@ -43,16 +43,14 @@ _SLOWER = 4.8
 _UNITS = {"indentation": "m", "load": "N", "impact": "m/s", "pressure": "Pa"}
 
 
-def settled(case: Case, folder: Path, warn: Say = ignore) -> Case:
+def with_chosen_grids(case: Case, folder: Path, warn: Say = ignore) -> Case:
     """Replace `grid.refine = "auto"` in `case` by a factor for each depth.
 
     Each depth gets the coarsest grid on which half of the contact nodes lie in patches of at least
-    1.5 times `NODES_PER_PATCH` nodes and that resolves adhesion at the asperities in contact. In
-    an ensemble, the first surface decides. Deeper contacts have larger patches, so bisection finds
-    the shallowest depth that a grid resolves. If no affordable grid resolves a depth, the depth
-    gets the finest affordable one, and `warn` is called. If the case does not state its model of
-    adhesion, it is `cohesive` if an affordable grid resolves the range of the attraction. Raises
-    the errors of `solve`.
+    1.5 times `NODES_PER_PATCH` nodes and that resolves adhesion; if no affordable grid does, the
+    finest affordable one, and `warn` is called. Deeper contacts have larger patches, so bisection
+    finds the shallowest depth that a grid resolves. In an ensemble, the first surface decides. An
+    open model of adhesion becomes `cohesive` if an affordable grid resolves its range.
     """
     if case.grid.refine != "auto":
         return case
@@ -84,8 +82,8 @@ def settled(case: Case, folder: Path, warn: Say = ignore) -> Case:
 def least_refined(case: Case, folder: Path, warn: Say = ignore) -> Case:
     """Replace `grid.refine = "auto"` by the smallest factor that resolves the range of adhesion.
 
-    Nothing is solved, so a run may choose larger factors. The factor is 1 if no affordable grid
-    resolves the range, and for other contacts.
+    Nothing is solved. The factor is 1 if no affordable grid resolves the range, and for other
+    contacts.
     """
     if case.grid.refine != "auto":
         return case
@@ -100,11 +98,7 @@ def least_refined(case: Case, folder: Path, warn: Say = ignore) -> Case:
 
 
 def with_chosen_adhesion(case: Case, contact: Contact, warn: Say = ignore) -> Case:
-    """Return `case` with the model of adhesion of `contact`, so that all its grids use this model.
-
-    A case that states its model is returned unchanged. If the grid of `contact` is too coarse for
-    the range of the attraction, `warn` is called.
-    """
+    """State the model of adhesion of `contact` in `case`, so that all its grids use this model."""
     if contact.adhesion is None or case.interface.adhesion is not None:
         return case
     for line in no_range(contact):
@@ -113,8 +107,6 @@ def with_chosen_adhesion(case: Case, contact: Contact, warn: Say = ignore) -> Ca
 
 
 class _Level:
-    """The contact of `case` on one grid, and its states at the depths tried so far."""
-
     def __init__(self, case: Case, folder: Path) -> None:
         self.case, self.contact = case, case.realisation(0).contact(folder)
         self._states: dict[float, State | None] = {}
@@ -122,12 +114,10 @@ class _Level:
 
     @property
     def _range(self) -> float:
-        """Largest spacing (m) that resolves the range of the attraction."""
         return interface_of(self.contact).coarsest_spacing(self.contact.pair)
 
     @property
     def resolves_range(self) -> bool:
-        """Whether the cells resolve the range of the attraction."""
         return interface_of(self.contact).resolves_range(self.contact)
 
     def resolves(self, depth: float) -> bool:
@@ -151,7 +141,6 @@ class _Level:
         return wide if self.case.run_bytes(grid) > available() else ""
 
     def unresolved(self, depths: list[float], why: str) -> str:
-        """Say that the grid does not resolve `depths` (of the case), and what would."""
         key = self.case.prescribed
         first, last = (quantity(depth, _UNITS[key]) for depth in (depths[0], depths[-1]))
         where = f"at {first}" if first == last else f"from {first} to {last}"

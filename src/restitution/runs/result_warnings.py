@@ -9,9 +9,8 @@ from restitution.case.case import Case
 from restitution.contact.checks.resolution import unresolved_adhesion, unresolved_patches
 from restitution.curve.periodic import PeriodicPoint
 from restitution.curve.point import Point
-from restitution.display import duration
+from restitution.display import duration, quantity
 from restitution.numerics.grid import Grid
-from restitution.runs.messages import message
 
 # The time of a run grows with the inverse of the cell size to this power.
 _GROWTH = 2.3
@@ -22,10 +21,9 @@ _BALANCE = 0.01  # relative difference of unloading work and stored energy
 
 
 def unresolved(points: Sequence[Point | PeriodicPoint]) -> Iterator[str]:
-    """Yield a warning if contact patches have too few nodes."""
     depths = [point.indentation for point in points]
     patches = [point.median_patch_nodes for point in points]
-    yield from map(message, unresolved_patches(depths, patches))
+    yield from (finding.text() for finding in unresolved_patches(depths, patches))
 
 
 def too_coarse_for_adhesion(
@@ -33,7 +31,7 @@ def too_coarse_for_adhesion(
 ) -> Iterator[str]:
     """Yield a warning if cells are too large for adhesion, with the finer grid and its cost.
 
-    `grid` is the grid of the deepest of the `points`, and `seconds` is the time of the run so far.
+    `grid` is that of the deepest of `points`, and `seconds` the time of the run so far.
     """
     factor = case.grid.factor
     unrefined = factor * max(grid.spacing)
@@ -47,13 +45,12 @@ def too_coarse_for_adhesion(
         nx, ny = (n * finding.refine // factor for n in grid.nodes)
         finer = max(1.0, finding.spacing / finding.needed)
         cost = duration(seconds * finer**_GROWTH)
-        yield f"{message(finding)} ({nx} x {ny} nodes, about {cost})"
+        yield f"{finding.text()} ({nx} x {ny} nodes, about {cost})"
 
 
 def imprecise(points: Sequence[Point], case: Case) -> Iterator[str]:
-    """Yield a warning if the COR of some depths is less precise than requested."""
-    asked = max(_IMPRECISE, case.unloading.restitution_error)
-    missed = [point for point in points if point.restitution_error > asked]
+    limit = max(_IMPRECISE, case.unloading.restitution_error)
+    missed = [point for point in points if point.restitution_error > limit]
     if missed:
         worst = max(missed, key=lambda point: point.restitution_error)
         why = (
@@ -62,23 +59,22 @@ def imprecise(points: Sequence[Point], case: Case) -> Iterator[str]:
             else "contact forms and breaks in jumps at these depths; use a finer grid"
         )
         yield (
-            f"restitution_error is above {asked:g} at {len(missed)} of {len(points)} depths, "
-            f"at worst {worst.restitution_error:.2g} at {1e9 * worst.indentation:.4g} "
-            f"nm: {why}"
+            f"restitution_error is above {limit:g} at {len(missed)} of {len(points)} depths, "
+            f"at worst {worst.restitution_error:.2g} at "
+            f"{quantity(worst.indentation, 'm')}: {why}"
         )
 
 
 def velocities_missed(
     points: Sequence[Point], case: Case, prescribed: Sequence[float]
 ) -> Iterator[str]:
-    """Yield a warning if impact velocities differ from the prescribed values."""
     if case.impact is None:
         return
     pairs = zip((point.impact_velocity for point in points), prescribed, strict=False)
-    off = {asked: abs(met / asked - 1) for met, asked in pairs}
-    missed = [asked for asked, miss in off.items() if not miss <= _VELOCITY]
+    off = {velocity: abs(met / velocity - 1) for met, velocity in pairs}
+    missed = [velocity for velocity, miss in off.items() if not miss <= _VELOCITY]
     if missed:
-        worst = max(missed, key=lambda asked: off[asked])
+        worst = max(missed, key=off.__getitem__)
         yield (
             f"{len(missed)} of {len(off)} impact velocities differ from the requested values "
             f"because of the error of the loading work, at worst by {off[worst]:.1%} at {worst:g} "
@@ -94,5 +90,6 @@ def unbalanced(checks: list[dict[str, float]]) -> Iterator[str]:
         yield (
             f"the work of {len(off)} of {len(checks)} unloading curves differs from the stored "
             f"energy, at worst by {worst['relative_to_stored_energy']:+.1%} at "
-            f"{1e9 * worst['max_indentation_m']:.4g} nm: raise unloading.steps, or refine the grid"
+            f"{quantity(worst['max_indentation_m'], 'm')}: raise unloading.steps, or refine the "
+            "grid"
         )

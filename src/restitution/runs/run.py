@@ -21,8 +21,6 @@ from restitution.contact.state import State
 from restitution.curve.curve import largest
 from restitution.curve.follow import Impact, follow
 from restitution.errors import DomainError, NotConvergedError, RestitutionError
-from restitution.numerics.convolution.device import current
-from restitution.numerics.kernels import instruction_set
 from restitution.results.interruption import hold_signals
 from restitution.results.maps import DepthMaps, write_maps
 from restitution.results.writer import (
@@ -40,10 +38,10 @@ from restitution.runs.error_budget import (
     interrupted_errors,
     total_error_summary,
 )
-from restitution.runs.log import RunLog, Say, ignore
+from restitution.runs.log import RunLog, Say, ignore, solved_with
 from restitution.runs.messages import input_warnings, require_possible
 from restitution.runs.oblique import is_oblique, oblique_points
-from restitution.runs.refinement import settled, with_chosen_adhesion
+from restitution.runs.refinement import with_chosen_adhesion, with_chosen_grids
 from restitution.runs.result_warnings import (
     imprecise,
     too_coarse_for_adhesion,
@@ -96,21 +94,16 @@ def run_case(
     *,
     errors: bool = True,
 ) -> dict[str, Any]:
-    """Run `case` and return the summary.
+    """Run `case`, which has one surface, and return the summary.
 
-    `text` is the text of the case file, and files named in the case are relative to `folder`. The
-    case has one surface (see `ensemble`). `grid.refine = "auto"` is replaced first (`refinement`).
+    `text` is the text of the case file, and its files are relative to `folder`. With `errors`, a
+    depth that does not converge is left out, and the total errors are computed unless the case has
+    `total_error = false`. Without `errors`, it ends the curve, because several runs are compared by
+    the number of their point. Contact at the edge of the grid always ends the curve.
 
-    With `errors`, a depth that does not converge is left out, and the total errors of the rows are
-    computed (`error_budget`) unless the case has total_error = false. Without `errors`, a depth
-    that does not converge ends the curve, because rows of several runs are compared by their row
-    number. Contact at the edge of the grid always ends the curve. If depths fail, the first of
-    their errors is raised at the end of the run. Before any error is raised, the results so far and
-    the reason are written. If there are no results, the folder is removed.
-
-    Depths are measured from first touch on the finest grid. `progress` is called with a few words
-    after every depth. `warn` is called with every warning: about the input before the first solve,
-    and about the results at the end, even after an error.
+    Results so far are written before the first error is raised; a folder without results is
+    removed. `progress` is called after every depth. `warn` is called with the warnings about the
+    input before the first solve, and with those about the results at the end.
     """
     case.require_impact()
     run = _Run(progress, warn, errors=errors)
@@ -118,7 +111,7 @@ def run_case(
     with run.record(
         out, lambda: _write_results(case, text, out, run, run.deepest) if run.deepest else {}
     ):
-        case = settled(case, folder, run.warn)
+        case = with_chosen_grids(case, folder, run.warn)
         contact = case.contact(folder)
         case = with_chosen_adhesion(case, contact, run.warn)
         deepest = deepest_indentation(case)
@@ -151,7 +144,6 @@ def run_case(
 def _write_results(
     case: Case, text: str, out: ResultsFolder, run: _Run, deepest: State
 ) -> dict[str, Any]:
-    """Write the results of the run, and return its summary."""
     summary = _summarise(case, deepest.contact, out, run)
     summary["seconds"] = run.seconds
     dataset = results_dataset(out, deepest)
@@ -194,7 +186,7 @@ def _load_and_unload(
 
 
 def _keep(impact: Impact, case: Case, out: ResultsFolder, run: _Run) -> None:
-    """Write the row of an impact, and its unloading curve if the case asks for it."""
+    """Write the point of an impact, and its unloading curve if the case asks for it."""
     state, collision = impact.state, impact.collision
     with hold_signals():  # an interruption leaves a complete row or no row
         run.prescribed.append(impact.load.prescribed)
@@ -209,34 +201,23 @@ def _keep(impact: Impact, case: Case, out: ResultsFolder, run: _Run) -> None:
 
 
 def _check(state: State, back: Sequence[State], collision: Collision) -> dict[str, float]:
-    """Return the energy balance of an unloading curve, for the diagnostics of the run."""
-    work = unloading_curve(list(back)).work()
+    """The energy balance of an unloading curve, for the diagnostics of the run."""
+    work, lost = unloading_curve(list(back)).work(), collision.adhesive_loss
+    unbalance = interface_of(state.contact).unbalance(state, back[-1], work, lost)
     return {
         "max_indentation_m": state.indentation,
         "unloading_work_J": work,
-        "adhesive_loss_J": collision.adhesive_loss,
-        "relative_to_stored_energy": _unbalance(state, back[-1], work, collision.adhesive_loss),
+        "adhesive_loss_J": lost,
+        "relative_to_stored_energy": unbalance,
         "restitution_from_energy_estimate": collide(state, method="energy-estimate").restitution,
         "separation_indentation_m": back[-1].indentation,
     }
 
 
-def _unbalance(state: State, end: State, work: float, lost: float) -> float:
-    """Return the relative error of the energy balance of an unloading curve.
-
-    The error is the difference between `work` (J) and the work that the balance predicts, relative
-    to the stored energy. `lost` is the energy (J) that adhesion dissipates between `state` and
-    `end`.
-    """
-    return interface_of(state.contact).unbalance(state, end, work, lost)
-
-
 def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> dict[str, Any]:
     points = out.curve.points
     return {
-        "title": case.title,
-        "status": run.status,
-        "reason": run.reason,
+        **run.head(case),
         "depths_asked": len(case.depths()),
         "depths_computed": len(points),
         "warnings": [*run.warnings, *_result_warnings(case, contact, out, run)],
@@ -265,9 +246,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> d
             **total_error_summary(case, points, run.material_parts),
             "unloading_checks": run.unloading_checks,
         },
-        "device": current().name,
-        "kernels": instruction_set,
-        "convolutions": sum(int(point.convolutions) for point in points),
+        **solved_with(points),
         "seconds_by_depth": run.depth_seconds,
         "versions": versions(),
     }
@@ -279,7 +258,7 @@ def _materials(case: Case) -> dict[str, Any]:
     return {
         name: {
             "material": body.material,
-            **{key: found.model_dump() for key, found in body.from_library().items()},
+            **{key: value.model_dump() for key, value in body.from_library().items()},
         }
         for name, body in case.bodies().items()
         if body.material is not None
@@ -287,7 +266,6 @@ def _materials(case: Case) -> dict[str, Any]:
 
 
 def _result_warnings(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> Iterator[str]:
-    """Yield the warnings about the results of the run."""
     points = out.curve.points
     yield from unresolved(points)
     yield from too_coarse_for_adhesion(case, contact.grid, points, run.seconds)

@@ -30,14 +30,12 @@ _DEPTHS = 20  # number of depths up to yield; the same number of depths is used 
 def smooth_curve(
     contact: Contact, points: Sequence[Point], check: Callable[[], None] = lambda: None
 ) -> dict[str, Any]:
-    """Make the variables of results.nc for the smooth bodies: force, restitution and velocity.
+    """Make the variables of `results.nc` for the smooth bodies: force, restitution and velocity.
 
-    The curve spans the depths and velocities of `points`. Up to yield it is Hertz's solution.
-    Beyond yield, each depth is solved on a separate small grid. The result is empty for the yield
-    model `truncated`, because Thornton and Ning's formulas describe smooth bodies with this model.
-    It is also empty for adhesive contacts, because small grids do not resolve adhesion. `check` is
-    called before every solve, and may raise an error to end the curve. Raises the errors of
-    `solve`.
+    The curve spans the depths and velocities of `points`. Up to yield it is Hertz's solution;
+    beyond, each depth is solved on a small grid. Empty for the model `truncated` (Thornton and
+    Ning's formulas describe it) and for adhesive contacts (small grids do not resolve adhesion).
+    `check` is called before every solve, and may raise an error to end the curve.
     """
     pair = contact.pair
     if not contact.plasticity.bounds_solve or contact.adhesive or not points:
