@@ -2,12 +2,13 @@
 
 import math
 
+from points import point
 from restitution.cli.run import _elastic_error, _with_error
 
 
 def test_the_error_of_a_model_that_does_not_yield_is_explained():
     def row(error, work, cor):
-        return {"model_error": error, "plastic_work_J": work, "restitution": cor}
+        return point(model_error=error, plastic_work=work, restitution=cor)
 
     assert "from 1.6 Y on" in _elastic_error([row(0.0, 0.0, 1.0), row(0.07, 0.0, 1.0)])
     for other in (row(0.0, 0.0, 1.0), row(0.1, 1e-9, 0.9), row(0.1, 0.0, 0.9)):

@@ -105,3 +105,8 @@ def test_what_is_not_a_model_names_the_form_to_write(pair, options, words):
     with pytest.raises(CaseError, match=words) as refusal:
         Contact(pair, smooth(Grid((3, 3), (1e-6, 1e-6))), **options)
     assert "\n" not in str(refusal.value)
+
+
+def test_a_yield_pressure_without_its_model_is_told_the_new_form(pair):
+    with pytest.raises(CaseError, match=r"plasticity=ConstantBound\(yield_pressure\)"):
+        Contact(pair, smooth(Grid((8, 8), (1e-6, 1e-6))), 1e9)

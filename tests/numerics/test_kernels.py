@@ -12,12 +12,13 @@ from tolerance import approx
 compiled = pytest.mark.skipif(kernels.loops is None, reason="built without a compiler")
 
 SOLVE = """
-from restitution import Body, Contact, Grid, Pair, generate_surface, solve
+from restitution import Body, ConstantBound, Contact, Grid, Pair, generate_surface, solve
 from restitution.numerics import kernels
 grid = Grid((64, 64), (0.25e-6, 0.25e-6))
 body = Body(500e-6, 210e9, 0.25)
 surface = generate_surface(grid, kind="gaussian", rms=2e-8, correlation_length=1e-6, seed=1)
-print(kernels.instruction_set, solve(Contact(Pair(body, body), surface, 4e9), 60e-9).force)
+contact = Contact(Pair(body, body), surface, ConstantBound(4e9))
+print(kernels.instruction_set, solve(contact, 60e-9).force)
 """
 
 

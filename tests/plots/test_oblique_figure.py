@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import restitution as rs
+from restitution.curve.columns import array
 from restitution.impacts.oblique import full_slip_angle
 from restitution.pages.run import write_run_page
 from restitution.plots.figure import Line, Mark, Points
@@ -30,23 +31,23 @@ def run(tmp_path_factory):
 
 def test_each_chart_has_the_values_of_the_table_and_the_angle_of_full_slip(run):
     charts = oblique_figure(run.dataset).panels
-    columns = ("tangential_restitution", "rebound_angle_rad", "first_spin_rad_per_s")
+    columns = ("tangential_restitution", "rebound_angle", "first_spin")
     ratio = run.case.pair().tangential_modulus / run.case.pair().contact_modulus
     for chart, column, scale in zip(charts, columns, (1, math.degrees(1), 1), strict=True):
         points = [each for each in chart.series if isinstance(each, Points)]
         assert [each.label for each in points] == ["0.02 m/s", "0.05 m/s"]
-        rows = [row for row in run.oblique if row["impact_velocity_m_per_s"] == 0.05]
-        values = np.array([scale * row[column] for row in rows])
+        rows = [row for row in run.oblique if row.velocity == 0.05]
+        values = scale * array(rows, column)
         known = np.isfinite(values)
         assert points[1].y == approx(values[known], abs=1e-9)
         assert points[1].x == approx(np.array([0, 15, 50.0])[known], abs=1e-9)
         (mark,) = (each for each in chart.series if isinstance(each, Mark))
         assert mark.value == approx(math.degrees(full_slip_angle(0.1, 1.0, ratio)), rel=1e-3)
-        slides = [bool(row["slides"]) for row in rows]
+        slides = [bool(row.slides) for row in rows]
         assert slides == [angle > mark.value for angle in (0, 15, 50)]
         assert list(~points[1].open) == list(np.array(slides)[known])
     (line,) = (each for each in charts[0].series if isinstance(each, Line))
-    assert line.y[-1] == approx(run.oblique[-1]["tangential_restitution"], rel=1e-4)
+    assert line.y[-1] == approx(run.oblique[-1].tangential_restitution, rel=1e-4)
     assert np.isfinite(charts[0].series[0].y).all()  # a head-on impact has no e_t
 
 
@@ -62,8 +63,8 @@ def test_the_figure_is_one_of_the_run_and_its_page_has_the_numbers(run):
     text = write_run_page(run.folder).read_text(encoding="utf-8")
     assert "Oblique impacts" in text
     row = run.oblique[-1]
-    assert f"{row['tangential_restitution']:.5g}" in text
-    assert f"{row['first_spin_rad_per_s']:.5g}" in text
+    assert f"{row.tangential_restitution:.5g}" in text
+    assert f"{row.first_spin:.5g}" in text
 
 
 def test_a_run_without_oblique_impacts_has_no_such_figure(run):
@@ -75,7 +76,7 @@ def test_collisions_in_python_take_texts_numbers_and_the_friction_of_the_case(ru
     row = run.oblique[-1]
     one = rs.collide_obliquely(run, "0.05 m/s", "50 deg")
     other = rs.collide_obliquely(str(run.folder), 0.05, math.radians(50), friction=0.1)
-    assert one.tangential_restitution == approx(row["tangential_restitution"], rel=1e-5)
+    assert one.tangential_restitution == approx(row.tangential_restitution, rel=1e-5)
     assert other.tangential_restitution == one.tangential_restitution
     turned = rs.collide_obliquely(run, 0.04, 0.0, spin=("60 rpm", -2 * math.pi))
     assert turned.spins[0] == approx(2 * math.pi)  # equal and opposite spins roll

@@ -56,6 +56,12 @@ def _naming_new_form(contact: type[Contact]) -> type[Contact]:
                 raise ArgumentError(
                     f"{name}: is part of a model now; call Contact(pair, surface, {_OLDER[name]})"
                 )
+        plasticity = kwargs.get("plasticity", args[2] if len(args) > 2 else None)
+        if isinstance(plasticity, (int, float)):
+            raise ArgumentError(
+                f"plasticity: {plasticity:g} is a number; call Contact(pair, surface, "
+                f"{_OLDER['yield_pressure']})"
+            )
         known(self, *args, **kwargs)
 
     contact.__init__ = checked  # type: ignore[method-assign]

@@ -40,7 +40,9 @@ def nested(
     """
     if not may_coarsen(np.shape(fine[0]), periodic):
         return None
-    coarse = tuple(_coarsened(field) if isinstance(field, np.ndarray) else field for field in fine)
+    coarse = tuple(
+        field if isinstance(field, (int, float)) else _coarsened(field) for field in fine
+    )
     return refine(coarse, nested(refine, coarse, periodic=periodic, level=level + 1), fine, level)
 
 
