@@ -1,7 +1,7 @@
-"""Print sixty numbers of runs, studies, laws and exports, with all digits.
+"""Print numbers of runs, studies, laws, exports and fits, with all digits.
 
-`python numbers.py PYTHON` runs the cases below with the program that PYTHON has installed, in a
-temporary folder, and prints one line "name,value" for each number.
+`python evidence/redesign/numbers.py PYTHON` runs the cases below with the program that PYTHON has
+installed, in a temporary folder, and prints one line "name;value" for each number.
 """
 
 from __future__ import annotations
@@ -42,24 +42,43 @@ poissons_ratio = 0.3
 density = "1200 kg/m^3"
 """
 CASES = {
-    "dry": STEEL + '[interface]\nyield_pressure = "1.4 GPa"\nfriction = 0.3\n' + ROUGH
-    + GRID.format(nodes=160, spacing="0.2 um") + IMPACT + "[unloading]\ncurves = 3\n",
-    "truncated": STEEL + '[interface]\nyield_pressure = "1.4 GPa"\nplasticity = "truncated"\n'
-    + ROUGH + GRID.format(nodes=160, spacing="0.2 um") + IMPACT,
-    "growing": STEEL + '[interface]\nyield_pressure = "2.8 Y"\n' + ROUGH
-    + GRID.format(nodes=160, spacing="0.2 um") + IMPACT,
+    "dry": STEEL
+    + '[interface]\nyield_pressure = "1.4 GPa"\nfriction = 0.3\n'
+    + ROUGH
+    + GRID.format(nodes=160, spacing="0.2 um")
+    + IMPACT
+    + "[unloading]\ncurves = 3\n",
+    "truncated": STEEL
+    + '[interface]\nyield_pressure = "1.4 GPa"\nplasticity = "truncated"\n'
+    + ROUGH
+    + GRID.format(nodes=160, spacing="0.2 um")
+    + IMPACT,
+    "growing": STEEL
+    + '[interface]\nyield_pressure = "2.8 Y"\n'
+    + ROUGH
+    + GRID.format(nodes=160, spacing="0.2 um")
+    + IMPACT,
     "jkr": SOFT.format(E="50 MPa")
     + '[interface]\nyield_pressure = "elastic"\nwork_of_adhesion = "0.05 J/m^2"\nadhesion = "jkr"\n'
-    + GRID.format(nodes=128, spacing="0.25 um") + '[indentation]\nvalues = ["0.3 um", "0.6 um"]\n',
+    + GRID.format(nodes=128, spacing="0.25 um")
+    + '[indentation]\nvalues = ["0.3 um", "0.6 um"]\n',
     "cohesive": SOFT.format(E="2 GPa")
     + '[interface]\nyield_pressure = "100 MPa"\nwork_of_adhesion = "0.05 J/m^2"\n'
     'adhesion = "cohesive"\nequilibrium_separation = "5 nm"\n'
-    + GRID.format(nodes=96, spacing="50 nm") + '[indentation]\nvalues = ["20 nm", "50 nm"]\n',
-    "ensemble": STEEL + '[interface]\nyield_pressure = "1.4 GPa"\n' + ROUGH
-    + "realisations = 3\n" + GRID.format(nodes=128, spacing="0.2 um") + IMPACT,
-    "periodic": STEEL.replace('"200 um"', '"flat"') + '[second]\nradius = "flat"\nyoungs_modulus = "210 GPa"\npoissons_ratio = 0.3\n'
-    '[interface]\nyield_pressure = "1.4 GPa"\n' + ROUGH.replace("50 nm", "20 nm")
-    + GRID.format(nodes=96, spacing="0.1 um") + 'periodic = true\n[pressure]\nvalues = ["20 MPa", "200 MPa"]\n',
+    + GRID.format(nodes=96, spacing="50 nm")
+    + '[indentation]\nvalues = ["20 nm", "50 nm"]\n',
+    "ensemble": STEEL
+    + '[interface]\nyield_pressure = "1.4 GPa"\n'
+    + ROUGH
+    + "realisations = 3\n"
+    + GRID.format(nodes=128, spacing="0.2 um")
+    + IMPACT,
+    "periodic": STEEL.replace('"200 um"', '"flat"')
+    + '[second]\nradius = "flat"\nyoungs_modulus = "210 GPa"\npoissons_ratio = 0.3\n'
+    '[interface]\nyield_pressure = "1.4 GPa"\n'
+    + ROUGH.replace("50 nm", "20 nm")
+    + GRID.format(nodes=96, spacing="0.1 um")
+    + 'periodic = true\n[pressure]\nvalues = ["20 MPa", "200 MPa"]\n',
 }
 
 STUDY = CASES["dry"].split("[unloading]")[0] + '\n[sweep]\n"roughness.rms" = ["20 nm", "50 nm"]\n'
@@ -84,7 +103,9 @@ refine = 1
 MEASURED = "velocity_m_per_s,restitution,restitution_std\n" + "".join(
     f"{V},{e},0.01\n" for V, e in ((0.05, 0.87), (0.1, 0.8), (0.2, 0.73), (0.4, 0.66))
 )
-SMOOTH = STEEL + '[interface]\nyield_pressure = "1.4 GPa"\n' + GRID.format(nodes=96, spacing="0.4 um")
+SMOOTH = (
+    STEEL + '[interface]\nyield_pressure = "1.4 GPa"\n' + GRID.format(nodes=96, spacing="0.4 um")
+)
 OBLIQUE = CASES["dry"].replace("[impact]", '[impact]\nangle = ["20 deg", "50 deg"]')
 
 
@@ -93,7 +114,9 @@ def rows(folder: Path, name: str = "curve.csv") -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
-def table(name: str, folder: Path, columns: str, file: str = "curve.csv") -> Iterator[tuple[str, str]]:
+def table(
+    name: str, folder: Path, columns: str, file: str = "curve.csv"
+) -> Iterator[tuple[str, str]]:
     """Values of `columns` in the first and last row."""
     stored = rows(folder, file)
     for column in columns.split():
@@ -106,16 +129,22 @@ def numbers(call: Callable[..., str], at: Path) -> Iterator[tuple[str, str]]:
     for name, text in CASES.items():
         (at / f"{name}.toml").write_text(text)
         call("run", f"{name}.toml", "-o", name)
-    yield from table("dry", at / "dry", "restitution total_error force_N loading_work_J model_error")
+    yield from table(
+        "dry", at / "dry", "restitution total_error force_N loading_work_J model_error"
+    )
     for name in ("truncated", "growing"):
         yield from table(name, at / name, "restitution total_error force_N")
     yield from table("jkr", at / "jkr", "restitution pull_off_force_N force_N stored_energy_J")
-    yield from table("cohesive", at / "cohesive", "restitution pull_off_force_N pull_off_error_N force_N")
+    yield from table(
+        "cohesive", at / "cohesive", "restitution pull_off_force_N pull_off_error_N force_N"
+    )
     yield from table("ensemble", at / "ensemble", "restitution total_error")
     yield from table("periodic", at / "periodic", "mean_gap_m stored_energy_J", "periodic.csv")
     (at / "oblique.toml").write_text(OBLIQUE)
     call("run", "oblique.toml", "-o", "oblique")
-    yield from table("oblique", at / "oblique", "tangential_restitution rebound_angle_rad", "oblique.csv")
+    yield from table(
+        "oblique", at / "oblique", "tangential_restitution rebound_angle_rad", "oblique.csv"
+    )
     call("converge", "truncated.toml", "-o", "convergence", "--grids", "2")
     yield from table("convergence", at / "convergence", "restitution discretisation_error")
     call("fit-law", "dry", "-o", "law")
@@ -133,12 +162,19 @@ def numbers(call: Callable[..., str], at: Path) -> Iterator[tuple[str, str]]:
     call("mixture", "mixture.toml", "-o", "mixture", "--workers", "1")
     for path in sorted((at / "mixture").rglob("law.json"))[:3]:
         points = json.loads(path.read_text())["points"]
-        yield f"mixture: {path.parent.name}, e at the highest velocity", repr(points[-1]["restitution"])
+        yield (
+            f"mixture: {path.parent.name}, e at the highest velocity",
+            repr(points[-1]["restitution"]),
+        )
     (at / "fit.toml").write_text(SMOOTH + IMPACT)
     (at / "measured.csv").write_text(MEASURED)
     call("fit", "measured.csv", "--case", "fit.toml", "--free", "yield_pressure", "-o", "fit")
     fitted = json.loads((at / "fit" / "fit.json").read_text())
-    (key,) = fitted["parameters"][:1] if isinstance(fitted["parameters"], list) else [fitted["parameters"]]
+    (key,) = (
+        fitted["parameters"][:1]
+        if isinstance(fitted["parameters"], list)
+        else [fitted["parameters"]]
+    )
     yield "fit: yield pressure and interval", json.dumps(key)
     call("reproduce", "--quick", "--workers", "1", "-o", "paper")
     for path in sorted((at / "paper").rglob("table.csv")):
@@ -151,7 +187,10 @@ def main(python: str) -> None:
 
         def call(*arguments: str) -> str:
             done = subprocess.run(
-                [python, "-m", "restitution", *arguments], cwd=folder, capture_output=True, text=True
+                [python, "-m", "restitution", *arguments],
+                cwd=folder,
+                capture_output=True,
+                text=True,
             )
             if done.returncode:
                 raise SystemExit(f"{arguments}: {done.stdout}{done.stderr}")
