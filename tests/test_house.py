@@ -101,3 +101,13 @@ def test_every_error_bar_of_the_mutation_tests_stands_once_in_the_source():
         assert bar["file"] in tests, name
     named = {test for line in tests.values() for test in line.split()}
     assert all((ROOT / "tests" / test).is_file() for test in named)
+
+
+def test_no_public_class_name_stands_twice():
+    names = [
+        node.name
+        for source in SOURCES.values()
+        for node in ast.walk(ast.parse(source))
+        if isinstance(node, ast.ClassDef) and not node.name.startswith("_")
+    ]
+    assert len(names) == len(set(names))

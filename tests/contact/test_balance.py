@@ -11,7 +11,7 @@ from restitution import Body, Contact, Grid, Pair, Surface, collide, solve
 from restitution.contact.jkr.area import balance_of
 from restitution.contact.jkr.limit import JKRLimit
 from restitution.contact.jkr.separation import separate, separation_of
-from restitution.contact.jkr.unloading_curve import SharedUnloading, UnloadingCurve, unloading_curve
+from restitution.contact.jkr.unloading_curve import ForceCurve, SharedUnloading, unloading_curve
 from restitution.contact.loading import step
 from restitution.contact.plasticity.bound import ConstantBound
 from restitution.theory import JKR
@@ -102,7 +102,7 @@ def test_the_work_of_a_curve_with_a_fixed_first_area():
     """Linear over the first interval; a parabola after it."""
     x = np.concatenate([[3.0], np.linspace(1, 0, 41)])
     force = np.concatenate([[10.0], x[1:] ** 2])
-    curve = UnloadingCurve(x, force, balanced=True, fixed=True)
+    curve = ForceCurve(x, force, balanced=True, fixed=True)
     assert curve.work() == approx(11 + 1 / 3, rel=1e-4)
     assert curve.halved().work() == approx(11 + 1 / 3, rel=1e-3)
     assert curve.halved().force.size == 22
@@ -112,12 +112,10 @@ def test_scatter_of_a_parabola_is_smoothed_and_a_jump_is_not():
     x = np.linspace(1, -1, 41)
     scattered = x**2 - 1
     scattered[20] -= 0.05
-    tension = UnloadingCurve(x, scattered, balanced=True).largest_tension()
+    tension = ForceCurve(x, scattered, balanced=True).largest_tension()
     assert tension == approx(1.01, abs=0.005)  # one of eleven points is off by 0.05
     force = np.where(x > 0, -1 + x, -0.2)
-    assert UnloadingCurve(x, force, balanced=True).largest_tension() == approx(
-        -force.min(), rel=0.01
-    )
+    assert ForceCurve(x, force, balanced=True).largest_tension() == approx(-force.min(), rel=0.01)
 
 
 def test_every_area_has_one_point():

@@ -19,7 +19,7 @@ from restitution.runs.companions import Companions, curve_of
 from restitution.runs.convergence import run_convergence
 from restitution.runs.ensemble import run_realisations
 from restitution.runs.error_budget import (
-    Band,
+    OmittedWaves,
     grid_error,
     scatter,
     unseen_yield,
@@ -141,7 +141,7 @@ def test_an_elastic_contact_counts_what_a_lower_yield_pressure_would_change():
             return impact(0.8 + 0.1 * factors[0])
 
     # With p = 3/4 of the pressure ½E*(S² − S_2h²)^½ that the waves add, p/p_S = 3/5.
-    waves = Band(octaves=0.0, slope=0.13, coarser_slope=0.05, removed_slope=0.0, pixel=1e-9)
+    waves = OmittedWaves(octaves=0.0, slope=0.13, coarser_slope=0.05, removed_slope=0.0, pixel=1e-9)
     force = 0.75 * 0.5 * 1e11 * 0.12 * 1e-12
     rows = [one(loading_work=1e-9, plastic_work=p, force=force) for p in (0.0, 1e-9, 3e-9)]
     unseen = unseen_yield(Falling(), waves, rows)
@@ -153,7 +153,7 @@ def test_an_elastic_contact_counts_what_a_lower_yield_pressure_would_change():
 
 
 def test_waves_matter_less_where_the_pressure_is_large():
-    waves = Band(octaves=0.0, slope=0.13, coarser_slope=0.05, removed_slope=0.0, pixel=1e-9)
+    waves = OmittedWaves(octaves=0.0, slope=0.13, coarser_slope=0.05, removed_slope=0.0, pixel=1e-9)
     area, added = 1e-12, 0.5 * 1e11 * 0.12
     ratios = [waves.pressure_ratio(k * added * area, area, 1e11) for k in (1.0, 3.0, 100.0)]
     assert ratios == approx([0.5**0.5, 3 / 10**0.5, 100 / 10001**0.5], rel=1e-12)
@@ -161,7 +161,7 @@ def test_waves_matter_less_where_the_pressure_is_large():
     assert waves.pressure_ratio(1e-9 * added * area, area, 1e11) == smallest
     assert waves.pressure_ratio(-1e-6, area, 1e11) == smallest
     assert waves.pressure_ratio(1e-6, 0.0, 1e11) == smallest
-    plane = Band(octaves=0.0, slope=0.0, coarser_slope=0.0, removed_slope=0.0, pixel=1e-9)
+    plane = OmittedWaves(octaves=0.0, slope=0.0, coarser_slope=0.0, removed_slope=0.0, pixel=1e-9)
     assert plane.pressure_ratio(1e-6, area, 1e11) == 1.0
 
 
@@ -193,7 +193,7 @@ def test_a_rough_contact_just_below_its_yield_pressure_has_no_vanishing_error(ca
     depths = [each["max_indentation_m"] for each in rows]
     fine = curve_of(case.refined(4).contact(tmp_path), depths, "path")
     missed = 1 - fine.at(np.array([rows[-1]["loading_work_J"]]))[0]
-    waves = Band.of(case.surface(tmp_path))
+    waves = OmittedWaves.of(case.surface(tmp_path))
     unseen = unseen_yield(Companions(case, tmp_path, depths), waves, points)
     assert 1e-4 < missed < unseen[-1] < rows[-1]["discretisation_error"]
 
@@ -325,7 +325,7 @@ def test_the_error_holds_what_the_grid_took_from_a_twin(scan, tmp_path):
     text = TWIN.format(file=scan.as_posix())
     rows, summary = run(text, tmp_path / "out")
     case = parse_case(text)
-    assert Band.of(case.surface(tmp_path)).octaves > 1
+    assert OmittedWaves.of(case.surface(tmp_path)).octaves > 1
     finer = parse_case("total_error = false\n" + text).refined(8)
     fine = ResultsFolder(tmp_path / "fine")
     run_realisations(finer, text, tmp_path, fine)

@@ -24,7 +24,7 @@ from restitution.runs.companions import Companions
 from restitution.runs.depths import later_touches
 from restitution.runs.error_budget import (
     MISSING_BAND,
-    Band,
+    OmittedWaves,
     interrupted_errors,
     spread_errors,
     total_error_summary,
@@ -48,7 +48,7 @@ class _OnGrid:
 
 @dataclass(frozen=True)
 class _Spread:
-    """Errors due to surface and materials, and `unseen_yield` and `Band.octaves` of a point."""
+    """Errors due to surface and materials, and `unseen_yield` and `OmittedWaves.octaves` of a point."""
 
     errors: dict[str, Any]
     unseen: float
@@ -135,7 +135,7 @@ def _spread_of(
     if not reached:
         return {}
     impacts = list(reached.values())
-    waves = Band.of(case.surface(folder))
+    waves = OmittedWaves.of(case.surface(folder))
     companions = Companions(case, folder, sorted(point.indentation for point in impacts))
     log.progress("error: yielding on a finer grid")
     unseen = unseen_yield(companions, waves, impacts)

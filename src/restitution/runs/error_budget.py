@@ -53,7 +53,7 @@ NOT_INCLUDED = (
 
 
 @dataclass(frozen=True)
-class Band:
+class OmittedWaves:
     """The waves that a grid leaves out of a scan (docs/error.md).
 
     `octaves` is n (0 if none is left out), `slope` S and `coarser_slope` S_2h. `removed_slope` is
@@ -67,7 +67,7 @@ class Band:
     pixel: float
 
     @classmethod
-    def of(cls, surface: Surface) -> Band:
+    def of(cls, surface: Surface) -> OmittedWaves:
         provenance = surface.provenance
         removed = float(provenance.get("removed_slope", 0.0))
         pixel = max(float(provenance.get(f"pixel_{axis}_m", 0.0)) for axis in "xy")
@@ -89,7 +89,7 @@ class Band:
         return max(force / math.hypot(force, added * area), smallest)
 
 
-def unseen_yield(companions: Companions, waves: Band, points: Sequence[Point]) -> Array:
+def unseen_yield(companions: Companions, waves: OmittedWaves, points: Sequence[Point]) -> Array:
     """Error q² D of COR of `points` due to nodes that would yield only on a finer grid."""
     work = array(points, "loading_work")
     stored, plastic = array(points, "stored_energy"), array(points, "plastic_work")
@@ -109,7 +109,7 @@ def grid_error(
     """Discretisation error of COR of each point, and how much of it is due to omitted waves.
 
     `change` is COR minus its value on cells twice as large, at the loading work `work` (J),
-    `unseen` the result of `unseen_yield`, and `octaves` `Band.octaves`.
+    `unseen` the result of `unseen_yield`, and `octaves` `OmittedWaves.octaves`.
     """
     near = np.sqrt(_smoothed(change**2, work, _NEAR_GRID))
     band = _BAND * octaves * near
@@ -216,7 +216,7 @@ class ErrorBudget:
     def _with_errors(
         self, companions: Companions, surface: Surface, points: Sequence[Point]
     ) -> list[Point]:
-        work, waves = array(points, "loading_work"), Band.of(surface)
+        work, waves = array(points, "loading_work"), OmittedWaves.of(surface)
         self._progress("error: cells twice as large")
         change = array(points, "restitution") - companions.own.at(work)
         unseen = unseen_yield(companions, waves, points)
@@ -241,7 +241,7 @@ def band_warning(surface: Surface, band_errors: Sequence[float]) -> Iterator[str
     lacking = [error for error in band_errors if error > MISSING_BAND]
     if not lacking:
         return
-    band = Band.of(surface)
+    band = OmittedWaves.of(surface)
     nodes = [math.ceil(edge / band.pixel) for edge in surface.grid.size]
     remedy = (
         "such a grid is too large, so use a smaller area, or only the larger depths"

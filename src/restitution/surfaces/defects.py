@@ -18,7 +18,7 @@ from restitution.surfaces.surface import Surface
 # correlation lengths of up to half of the part, at most 1 exceeded the factor.
 _FORM = 20.0
 _DEGREES = 4
-# Spikes: see `Spikes`. Height in standard deviations of the steps, and in Sq of the other pixels.
+# SpikePixels: see `SpikePixels`. Height in standard deviations of the steps, and in Sq of the other pixels.
 USUAL_THRESHOLD = 8.0
 _HEIGHTS = 4.0
 # Largest fraction of pixels that the usual threshold may replace. Beyond it, the threshold that
@@ -28,7 +28,7 @@ STEEP = 0.5  # rms slope beyond which small-slope theory is inaccurate
 
 
 @dataclass(frozen=True)
-class Form:
+class FittedForm:
     """Fractions of the height variance: of a plane, and of a sphere in what a plane leaves.
 
     The `radius` (m) of the sphere is negative for a hollow. `curvature` is 0 for long waves.
@@ -40,7 +40,7 @@ class Form:
 
 
 @dataclass(frozen=True)
-class Spikes:
+class SpikePixels:
     """Number of spikes, largest height (m), and the `threshold` of `remove_outliers` for them."""
 
     count: int = 0
@@ -48,12 +48,12 @@ class Spikes:
     threshold: float = USUAL_THRESHOLD
 
 
-def form_of(surface: Surface) -> Form:
+def form_of(surface: Surface) -> FittedForm:
     """Tilt and curvature that are left in the heights."""
     z = surface.height - surface.height.mean()
     total = float(np.sum(z * z))
     if total <= 0 or min(z.shape) < 3:
-        return Form()
+        return FittedForm()
     P, Q = (orthonormal_polynomials(n, _DEGREES) for n in z.shape)
     c = P.T @ z @ Q
     plane = float(c[1, 0] ** 2 + c[0, 1] ** 2)
@@ -69,12 +69,12 @@ def form_of(surface: Surface) -> Form:
     others = np.mean(np.square([saddle, c[1, 1], *higher]))
     tilt, rest = plane / total, total - plane
     if sphere == 0 or sphere**2 <= _FORM * others:
-        return Form(tilt)
-    return Form(tilt, min(sphere**2 / rest, 1.0), -norm / (2 * sphere))
+        return FittedForm(tilt)
+    return FittedForm(tilt, min(sphere**2 / rest, 1.0), -norm / (2 * sphere))
 
 
-def spikes_of(surface: Surface) -> Spikes:
-    """Spikes: a few pixels that stand far above the others, separated from them by a gap.
+def spikes_of(surface: Surface) -> SpikePixels:
+    """SpikePixels: a few pixels that stand far above the others, separated from them by a gap.
 
     With T the larger of 8 standard deviations of the steps above the local median and 4 Sq of the
     other pixels, pixels above 2 T are spikes if there are more than between T and 2 T. Steps down,
@@ -83,18 +83,18 @@ def spikes_of(surface: Surface) -> Spikes:
     from scipy.ndimage import label
 
     if min(surface.grid.nodes) < 5 or not _may_have_spikes(surface):
-        return Spikes()
+        return SpikePixels()
     step, deviation, level_height = local_steps(surface)
     if deviation <= 0:
-        return Spikes()
+        return SpikePixels()
     usual = np.abs(step) > USUAL_THRESHOLD * deviation
     high = max(USUAL_THRESHOLD * deviation, _HEIGHTS * float(level_height[~usual].std()))
     step = np.abs(step) if rms_slope(surface) > STEEP else step
     above, far = step > high, step > 2 * high
     if 2 * np.count_nonzero(far) <= np.count_nonzero(above):
-        return Spikes()
+        return SpikePixels()
     threshold = USUAL_THRESHOLD if usual.mean() <= _FEW else float(np.floor(high / deviation))
-    return Spikes(int(label(above, np.ones((3, 3)))[1]), float(step.max()), threshold)
+    return SpikePixels(int(label(above, np.ones((3, 3)))[1]), float(step.max()), threshold)
 
 
 def _may_have_spikes(surface: Surface) -> bool:

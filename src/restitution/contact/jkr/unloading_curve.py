@@ -29,7 +29,7 @@ _SAME = 0.03
 
 
 @dataclass(frozen=True)
-class UnloadingCurve:
+class ForceCurve:
     """Force (N) against decreasing indentation (m), shape (points,).
 
     If `balanced`, the first point is the state at which unloading begins, and the other points are
@@ -48,7 +48,7 @@ class UnloadingCurve:
             return -integrate_curve(x, F)
         return -float(np.trapezoid(F[:2], x[:2])) - integrate_curve(x[1:], F[1:])
 
-    def halved(self) -> UnloadingCurve:
+    def halved(self) -> ForceCurve:
         """Return the curve without every second point, to estimate the error of the work.
 
         The work of this curve has at least four times the error of the work from all points.
@@ -73,7 +73,7 @@ class UnloadingCurve:
         return -min(float(part.min()) for part in smoothed)
 
 
-def unloading_curve(path: list[State]) -> UnloadingCurve:
+def unloading_curve(path: list[State]) -> ForceCurve:
     """Return the curve of an unloading `path`.
 
     Each contact area gives its balance or, if this is unknown or unreliable, all states with this
@@ -84,7 +84,7 @@ def unloading_curve(path: list[State]) -> UnloadingCurve:
     nodes = [state.contact_nodes for state in path]
     if not any(balances) or not balances_are_reliable(path[0]):
         indentation, force = np.array(states).T
-        return UnloadingCurve(indentation, force, balanced=False)
+        return ForceCurve(indentation, force, balanced=False)
     points, fixed = states[:1], None
     same_area: list[tuple[float, float]] = []
     for k, balance in enumerate(balances):
@@ -96,7 +96,7 @@ def unloading_curve(path: list[State]) -> UnloadingCurve:
         fixed = len(points) > 1 if fixed is None else fixed
         same_area = []
     indentation, force = np.array(points).T
-    return UnloadingCurve(indentation, force, balanced=True, fixed=bool(fixed))
+    return ForceCurve(indentation, force, balanced=True, fixed=bool(fixed))
 
 
 def complete_curve(path: Sequence[State]) -> list[tuple[float, float]]:
@@ -134,7 +134,7 @@ class SharedUnloading:
     """Known states of an elastic unloading, to be reused in unloading from a larger depth."""
 
     states: Sequence[State]
-    curve: UnloadingCurve
+    curve: ForceCurve
 
     @classmethod
     def of(cls, state: State, known: Sequence[State]) -> SharedUnloading | None:
