@@ -48,7 +48,7 @@ class _OnGrid:
 
 @dataclass(frozen=True)
 class _Spread:
-    """Errors due to surface and materials, and `unseen_yield` and `OmittedWaves.octaves` of a point."""
+    """Errors by surface and materials, and `unseen_yield` and `OmittedWaves.octaves`."""
 
     errors: dict[str, Any]
     unseen: float

@@ -18,7 +18,7 @@ from restitution.surfaces.surface import Surface
 # correlation lengths of up to half of the part, at most 1 exceeded the factor.
 _FORM = 20.0
 _DEGREES = 4
-# SpikePixels: see `SpikePixels`. Height in standard deviations of the steps, and in Sq of the other pixels.
+# See `SpikePixels`. Height in standard deviations of the steps, and in Sq of the other pixels.
 USUAL_THRESHOLD = 8.0
 _HEIGHTS = 4.0
 # Largest fraction of pixels that the usual threshold may replace. Beyond it, the threshold that

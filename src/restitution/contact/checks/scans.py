@@ -13,8 +13,8 @@ from restitution.contact.checks.findings import (
     SteepSurface,
     TiltedScan,
 )
-from restitution.surfaces import Surface, defects, rms_slope
-from restitution.surfaces.defects import STEEP, Form, form_of, spikes_of
+from restitution.surfaces import Surface, rms_slope
+from restitution.surfaces.defects import STEEP, FittedForm, SpikePixels, form_of, spikes_of
 
 _TILTED = 0.5  # fraction of the variance of the heights that a plane explains
 # Fraction of the remaining variance that a sphere explains. On the edge of such a scan, the sphere
@@ -82,25 +82,25 @@ def _of_scan(
         yield CurvedScan(file, form.curvature, form.radius, reduced_radius)
 
 
-def _is_curved(form: Form, reduced_radius: float) -> bool:
+def _is_curved(form: FittedForm, reduced_radius: float) -> bool:
     if math.isinf(reduced_radius):
         return form.curvature > _CURVED_PERIODIC
     low, high = _DOUBLED
     return form.curvature > _CURVED and low <= reduced_radius / abs(form.radius) <= high
 
 
-def _form(surface: Surface, before: str) -> Form:
+def _form(surface: Surface, before: str) -> FittedForm:
     if (tilt := surface.provenance.get(f"{before}tilt_share")) is None:
         return form_of(surface)
     curvature = surface.provenance.get(f"{before}curvature_share", 0.0)
     radius = surface.provenance.get(f"{before}curvature_radius_m", math.inf)
-    return Form(float(tilt), float(curvature), float(radius))
+    return FittedForm(float(tilt), float(curvature), float(radius))
 
 
-def _spikes(surface: Surface, before: str) -> defects.Spikes:
+def _spikes(surface: Surface, before: str) -> SpikePixels:
     if (count := surface.provenance.get(f"{before}spikes")) is None:
         return spikes_of(surface)
     names = ("spike_height_m", "spike_threshold")
-    return defects.Spikes(
+    return SpikePixels(
         int(count), *(float(surface.provenance.get(f"{before}{name}", 0.0)) for name in names)
     )
