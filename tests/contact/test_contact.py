@@ -107,6 +107,9 @@ def test_what_is_not_a_model_names_the_form_to_write(pair, options, words):
     assert "\n" not in str(refusal.value)
 
 
-def test_a_yield_pressure_without_its_model_is_told_the_new_form(pair):
-    with pytest.raises(CaseError, match=r"plasticity=ConstantBound\(yield_pressure\)"):
-        Contact(pair, smooth(Grid((8, 8), (1e-6, 1e-6))), 1e9)
+def test_what_is_no_model_is_told_the_models(pair):
+    surface = smooth(Grid((8, 8), (1e-6, 1e-6)))
+    with pytest.raises(CaseError, match=r"plasticity: 1000000000.0 is no model; use Elastic\(\), "):
+        Contact(pair, surface, 1e9)
+    with pytest.raises(CaseError, match=r'adhesion: "jkr" is no model; use JKRLimit\(work_of_'):
+        Contact(pair, surface, adhesion="jkr")

@@ -22,7 +22,7 @@ from restitution.contact.bodies import Pair
 from restitution.contact.models import Adhesion, Plasticity
 from restitution.contact.plasticity.bound import Elastic
 from restitution.display import quantity, summary_html, summary_text
-from restitution.errors import ArgumentError, CaseError
+from restitution.errors import ArgumentError, CaseError, shown
 from restitution.numerics.box import Box
 from restitution.numerics.grid import Grid
 from restitution.numerics.read_only import freeze
@@ -45,6 +45,15 @@ _OLDER = {
     "equilibrium_separation": "adhesion=Cohesive(work_of_adhesion, equilibrium_separation)",
 }
 
+_MODELS: dict[str, tuple[Any, str]] = {
+    "plasticity": (
+        Plasticity,
+        "Elastic(), ConstantBound(yield_pressure), ExpandingCavity(yield_strength) or "
+        "Truncated(yield_pressure)",
+    ),
+    "adhesion": (Adhesion | None, "JKRLimit(work_of_adhesion), Cohesive(work_of_adhesion) or None"),
+}
+
 
 def _naming_new_form(contact: type[Contact]) -> type[Contact]:
     known: Callable[..., None] = contact.__init__
@@ -56,12 +65,10 @@ def _naming_new_form(contact: type[Contact]) -> type[Contact]:
                 raise ArgumentError(
                     f"{name}: is part of a model now; call Contact(pair, surface, {_OLDER[name]})"
                 )
-        plasticity = kwargs.get("plasticity", args[2] if len(args) > 2 else None)
-        if isinstance(plasticity, (int, float)):
-            raise ArgumentError(
-                f"plasticity: {plasticity:g} is a number; call Contact(pair, surface, "
-                f"{_OLDER['yield_pressure']})"
-            )
+        models = dict(zip(_MODELS, args[2:], strict=False)) | kwargs
+        for name, value in models.items():
+            if name in _MODELS and not isinstance(value, _MODELS[name][0]):
+                raise ArgumentError(f"{name}: {shown(value)} is no model; use {_MODELS[name][1]}")
         known(self, *args, **kwargs)
 
     contact.__init__ = checked  # type: ignore[method-assign]
