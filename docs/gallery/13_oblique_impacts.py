@@ -9,8 +9,6 @@ Nearly normal impacts stick. From 28.3 degrees on the whole contact slides, and
 :math:`e_t = 1 - \mu (1 + e_n)/\tan\theta`.
 """
 
-import tempfile
-
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -38,12 +36,11 @@ case = {
         "angle": [f"{angle} deg" for angle in (2, 5, 8, 12, 16, 20, 25, 32, 45, 62)],
     },
 }
-with tempfile.TemporaryDirectory() as folder:
-    rows = rs.run(case, out=f"{folder}/out").oblique
+points = rs.run(case).oblique
 
 fig, ax = plt.subplots(layout="constrained")
-angles = np.degrees([row["angle_rad"] for row in rows])
-ax.plot(angles, [row["tangential_restitution"] for row in rows], "o-", ms=4, label="computed")
+angles = np.degrees([point.angle for point in points])
+ax.plot(angles, [point.tangential_restitution for point in points], "o-", ms=4, label="computed")
 ax.plot(list(MEASURED), list(MEASURED.values()), "ks", label="measured")
 ax.axvline(28.3, color="grey", ls=":")
 ax.text(29, 0.58, "full slip", color="grey")

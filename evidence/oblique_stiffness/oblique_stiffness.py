@@ -12,8 +12,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import oblique_codes as codes
 
+from evidence.oblique import oblique_codes as codes
 from evidence.shared import write_table
 from restitution import Body, Pair
 from restitution.impacts.oblique import ObliqueCollision, collide_obliquely

@@ -93,8 +93,9 @@ def test_a_yield_pressure_that_is_not_positive_is_refused(pair, p_y):
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"plasticity": "perfect"}, 'plasticity: "perfect" is not a Plasticity'),
-        ({"adhesion": "jkr"}, 'adhesion: "jkr" is not a Adhesion or None'),
+        ({"plasticity": "perfect"}, r'plasticity: "perfect" is no model; use Elastic\(\), '),
+        ({"plasticity": 1e9}, r"use Elastic\(\), ConstantBound\(yield_pressure\), "),
+        ({"adhesion": "jkr"}, r'adhesion: "jkr" is no model; use JKRLimit\(work_of_adhesion\), '),
         ({"yield_pressure": 1e9}, r"plasticity=ConstantBound\(yield_pressure\)"),
         ({"yield_strength": 1e9}, r"plasticity=ExpandingCavity\(yield_strength\)"),
         ({"work_of_adhesion": 0.05}, r"adhesion=JKRLimit\(work_of_adhesion\)"),
@@ -105,11 +106,3 @@ def test_what_is_not_a_model_names_the_form_to_write(pair, options, words):
     with pytest.raises(CaseError, match=words) as refusal:
         Contact(pair, smooth(Grid((3, 3), (1e-6, 1e-6))), **options)
     assert "\n" not in str(refusal.value)
-
-
-def test_what_is_no_model_is_told_the_models(pair):
-    surface = smooth(Grid((8, 8), (1e-6, 1e-6)))
-    with pytest.raises(CaseError, match=r"plasticity: 1000000000.0 is no model; use Elastic\(\), "):
-        Contact(pair, surface, 1e9)
-    with pytest.raises(CaseError, match=r'adhesion: "jkr" is no model; use JKRLimit\(work_of_'):
-        Contact(pair, surface, adhesion="jkr")
