@@ -44,7 +44,7 @@ from warm_program import write_program
 ROOT = Path(__file__).parents[1]
 _FENCE = re.compile(
     r"^(?:<!-- not run: (?P<reason>[^\n]*) -->\n)?"
-    r"```(?P<language>\S*|\{code-block\} \w+)\n"
+    r"```(?P<language>\{[\w-]+\}[^\n]*|\S*)\n"
     r"(?P<options>(?::[a-z-]+:[^\n]*\n)*)\n?(?P<body>.*?)^```$",
     re.MULTILINE | re.DOTALL,
 )
