@@ -56,8 +56,8 @@ def measure(name: str) -> dict[str, float]:
     import tempfile
     import time
 
-    from restitution.case.bodies import InterfaceTable
     from restitution.case.case_file import parse_case
+    from restitution.case.interface import InterfaceTable
     from restitution.results.writer import ResultsFolder
     from restitution.runs.convergence import run_convergence
     from restitution.runs.run import run_case

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from restitution.case.bodies import Yielding
 from restitution.case.case_file import parse_case
+from restitution.case.interface import Yielding
 from restitution.case.materials import material
 from restitution.contact.plasticity.cavity import ExpandingCavity
 from restitution.errors import CaseError

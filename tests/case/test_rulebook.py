@@ -9,9 +9,9 @@ from pydantic import Field, ValidationError
 
 from document_blocks import key_table, with_tables
 from restitution.app.form import form
-from restitution.case.bodies import InterfaceTable
 from restitution.case.case import Case
 from restitution.case.case_file import in_words
+from restitution.case.interface import InterfaceTable
 from restitution.case.rulebook import Input, key, rules, tables_in
 
 PAGE = Path(__file__).parents[2] / "docs" / "case-file.md"

@@ -9,7 +9,8 @@ from typing import Annotated, Any, Literal, cast
 from pydantic import BeforeValidator, model_validator
 
 from restitution.case import needs
-from restitution.case.bodies import BodyTable, InterfaceTable, Yielding
+from restitution.case.bodies import BodyTable
+from restitution.case.interface import InterfaceTable, Yielding
 from restitution.case.materials import Property, with_library_adhesion, work_of_adhesion
 from restitution.case.models import Adhesion, adhesion_of
 from restitution.case.quantities import Force, Length, Pressure

@@ -15,7 +15,6 @@ from restitution.contact.models import Plasticity as PlasticityModel
 from restitution.contact.plasticity.bound import ConstantBound, Elastic
 from restitution.contact.plasticity.cavity import ExpandingCavity
 from restitution.contact.plasticity.truncated import Truncated
-from restitution.errors import CaseError
 
 # The words of the keys; each is the label of a model.
 Plasticity = Literal["expanding-cavity", "equilibrium", "truncated"]
@@ -59,22 +58,3 @@ def adhesion_of(
     return JKRLimit(
         work_of_adhesion, _APPROACHES[approach], _DETACHMENTS[detachment], equilibrium_separation
     )
-
-
-def require_cohesive(approach: str, detachment: str, plasticity: str | None) -> None:
-    """Raise `CaseError` if an option has no meaning with `adhesion = "cohesive"`."""
-    if detachment != "crack-closure":
-        raise CaseError(
-            f'detachment: "{detachment}" belongs to adhesion = "jkr"; a cohesive contact has no '
-            "detachment criterion, so leave detachment out"
-        )
-    if approach != "equilibrium":
-        raise CaseError(
-            f'approach: "{approach}" belongs to adhesion = "jkr"; cohesive bodies always attract '
-            "each other on approach, so leave approach out"
-        )
-    if plasticity == "truncated":
-        raise CaseError(
-            'plasticity: "truncated" is not defined with adhesion = "cohesive"; use "equilibrium", '
-            'or adhesion = "jkr"'
-        )

@@ -12,8 +12,9 @@ from typing import Annotated, Any, TypeVar
 import numpy as np
 from pydantic import BeforeValidator, Field, ValidationError, model_validator
 
-from restitution.case.bodies import BodyTable, InterfaceTable
+from restitution.case.bodies import BodyTable
 from restitution.case.case_file import in_words, naming, parse_toml, read_text
+from restitution.case.interface import InterfaceTable
 from restitution.case.materials import LIBRARY
 from restitution.case.quantities import Length
 from restitution.case.roughness import Roughness

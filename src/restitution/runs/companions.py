@@ -15,8 +15,9 @@ from pathlib import Path
 
 import numpy as np
 
-from restitution.case.bodies import BodyTable, Yielding
+from restitution.case.bodies import BodyTable
 from restitution.case.case import Case
+from restitution.case.interface import Yielding
 from restitution.collision import UnloadingMethod
 from restitution.contact.bodies import Pair
 from restitution.contact.contact import Contact, smooth
