@@ -1,5 +1,7 @@
 """Whole tasks in Python: run a case, open its results, make a law, export it."""
 
+import copy
+import pickle
 import re
 import tomllib
 from importlib import metadata
@@ -9,6 +11,7 @@ import numpy as np
 import pytest
 
 import restitution as rs
+from restitution.curve.curve import Curve
 from restitution.errors import DomainError, OutputError
 from tolerance import approx
 
@@ -168,3 +171,10 @@ def test_a_curve_is_interpolated_and_not_extrapolated(results):
         curve.at(2 * velocities[-1])
     with pytest.raises(AttributeError):
         _ = curve.restitutions
+    with pytest.raises(AttributeError):
+        _ = curve.cells
+    assert Curve().force.size == 0
+    for same in (pickle.loads(pickle.dumps(curve)), copy.deepcopy(curve)):
+        assert str(same.rows) == str(curve.rows)  # NaN differs from itself
+    with pytest.raises(DomainError, match="no impact velocities"):
+        Curve().at(0.1)

@@ -6,6 +6,7 @@ import dataclasses
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Any, Self
 
 import numpy as np
@@ -60,27 +61,30 @@ class Record:
     @classmethod
     def columns(cls) -> dict[str, Column]:
         """The columns by header, in the order of the fields."""
-        return _columns(cls)
+        kind: Any = cls
+        return dict(_columns(kind))
 
     def cells(self) -> dict[str, Any]:
         """The values by header."""
-        return {
-            header: getattr(self, name)
-            for header, name in zip(_columns(type(self)), _names(type(self)), strict=True)
-        }
+        kind: Any = type(self)
+        names = zip(_columns(kind), _names(kind), strict=True)
+        return {header: getattr(self, name) for header, name in names}
 
     @classmethod
     def of_cells(cls, cells: Mapping[str, Any]) -> Self:
         """The inverse of `cells`; headers that are no columns are ignored."""
-        names = zip(_columns(cls), _names(cls), strict=True)
+        kind: Any = cls
+        names = zip(_columns(kind), _names(kind), strict=True)
         return cls(**{name: cells[header] for header, name in names if header in cells})
 
 
-def _names(kind: type[Record]) -> tuple[str, ...]:
+@cache
+def _names(kind: Any) -> tuple[str, ...]:
     return tuple(part.name for part in dataclasses.fields(kind))
 
 
-def _columns(kind: type[Record]) -> dict[str, Column]:
+@cache
+def _columns(kind: Any) -> dict[str, Column]:
     columns = {}
     for part in dataclasses.fields(kind):
         words = {**part.metadata}

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from restitution.curve.columns import Array, array
-from restitution.curve.interpolation import RatioCurve
+from restitution.curve.interpolation import RatioCurve, root
 from restitution.curve.point import PARTS, Point
 from restitution.display import counted, quantity, summary_html, summary_text
 from restitution.errors import DomainError
@@ -50,8 +50,10 @@ class Curve:
     points: tuple[Point, ...] = ()
 
     def __getattr__(self, name: str) -> Array:
-        if name.startswith("_") or not hasattr(self.points[0] if self.points else Point, name):
-            raise AttributeError(name)
+        # `pickle` looks for special methods before there are points.
+        kind = type(self.points[0]) if not name.startswith("_") and self.points else Point
+        if name not in {part.name for part in fields(kind)}:
+            raise AttributeError(f"a curve has no {name}")
         return array(self.points, name)
 
     @property
@@ -71,7 +73,7 @@ class Curve:
             DomainError: A velocity lies outside the computed ones; nothing is extrapolated.
         """
         V = np.asarray(velocity, dtype=float)
-        curve, span = self._ratios(), self.velocities
+        span, curve = self.velocities, self._ratios()
         if not ((span[0] * (1 - _SAME) <= V) & (span[1] * (1 + _SAME) >= V)).all():
             low, high = (quantity(end, "m/s") for end in span)
             raise DomainError(
@@ -79,7 +81,7 @@ class Curve:
                 "extrapolated; choose velocities in this range, or compute more of them"
             )
         inside = np.clip(V.ravel(), *span)
-        e = [math.sqrt(min(max(curve.at(v), 0.0), 1.0)) for v in inside.tolist()]
+        e = [root(curve.at(v)) for v in inside.tolist()]
         return np.asarray(np.reshape(e, V.shape)[()])
 
     @property

@@ -94,6 +94,11 @@ class RatioCurve:
         return miss
 
 
+def root(ratio: float) -> float:
+    """COR of W_u/W_l."""
+    return math.sqrt(min(max(ratio, 0.0), 1.0))
+
+
 def _pchip(x: Array, y: Array, at: float) -> float:
     from scipy.interpolate import PchipInterpolator
 

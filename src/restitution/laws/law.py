@@ -12,7 +12,7 @@ from pydantic import Field, TypeAdapter, model_validator
 from pydantic.dataclasses import dataclass as checked_dataclass
 
 from restitution.case.quantities import read_positive
-from restitution.curve.interpolation import RatioCurve
+from restitution.curve.interpolation import RatioCurve, root
 from restitution.display import counted, quantity, summary_html, summary_text, with_error
 from restitution.errors import CaseError, DomainError
 from restitution.laws.particle import STRICT, NotNegative, Particle, Positive, Share
@@ -295,8 +295,3 @@ def velocity_of(text: str) -> float:
         return read_positive(text, "m/s")
     except ValueError as error:
         raise CaseError(f"velocity: {error}") from None
-
-
-def root(ratio: float) -> float:
-    """COR of W_u/W_l."""
-    return math.sqrt(min(max(ratio, 0.0), 1.0))

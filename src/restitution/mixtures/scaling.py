@@ -13,9 +13,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.curve.interpolation import RatioCurve
+from restitution.curve.interpolation import RatioCurve, root
 from restitution.laws.compact_fit import compact_fit
-from restitution.laws.law import Law, LawPoint, root
+from restitution.laws.law import Law, LawPoint
 from restitution.mixtures.family import Family, ParticlePair
 
 Array = NDArray[np.float64]
