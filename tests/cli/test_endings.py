@@ -291,24 +291,45 @@ def test_a_disk_that_is_full_for_the_results(
     assert not list(out.glob(".*"))
 
 
-@pytest.mark.parametrize(("error", "status"), [("KeyboardInterrupt", 2), ("Stopped(15)", 15)])
-def test_a_signal_that_a_destructor_swallows_comes_again(error, status):
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_that_a_destructor_swallows_comes_again(number):
     program = f"""
-import time
+import signal, time
 from restitution.cli.signals import Stopped, stoppable
 
 class Swallows:
     def __del__(self):
-        raise {error}
+        signal.raise_signal({int(number)})
 
+signal.signal(signal.SIGINT, signal.default_int_handler)
 with stoppable():
     try:
         thing = Swallows()
         del thing
         time.sleep(5)
         print("lost")
-    except KeyboardInterrupt as error:
-        print(error.args[0] if isinstance(error, Stopped) else 2)
+    except Stopped as stop:
+        print(stop.args[0])
 """
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
-    assert (done.stdout, done.stderr) == (f"{status}\n", "")
+    assert (done.stdout, done.stderr) == (f"{int(number)}\n", "")
+
+
+@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_a_signal_that_compiled_code_turns_into_another_error(
+    cli, case, tmp_path, monkeypatch, number, status
+):
+    """Matplotlib 3.11.2's `ft2font` raises `ImportError` if Ctrl-C comes while it is imported."""
+    from restitution.plots import run as figures
+
+    def imported(_):
+        try:
+            signal.raise_signal(number)
+        except KeyboardInterrupt as error:
+            raise ImportError("initialization failed") from error
+
+    monkeypatch.setattr(figures, "pressure_map", imported)
+    ended, _, said = cli("run", case, "-o", tmp_path / "out")
+    assert ended == status
+    assert said.count("Interrupted.") == 1
+    assert "4 of 4 depths were computed and are kept" in said

@@ -1,4 +1,4 @@
-"""Handle SIGTERM (time limit of a scheduler) and SIGHUP (closed terminal) like Ctrl-C."""
+"""End on Ctrl-C, SIGTERM (time limit of a scheduler) and SIGHUP (closed terminal) alike."""
 
 from __future__ import annotations
 
@@ -30,32 +30,34 @@ received: list[int] = []
 
 @contextmanager
 def stoppable() -> Iterator[None]:
-    """Raise `Stopped` on SIGTERM and SIGHUP, unless they are already ignored (`nohup`) or handled.
+    """Raise `Stopped` on SIGINT, SIGTERM and SIGHUP, unless already ignored (`nohup`) or handled.
 
     Python drops an exception that is raised in a destructor or in the callback of a weak reference.
-    If it drops `Stopped` or `KeyboardInterrupt`, the signal is sent again a moment later.
+    If it drops `Stopped`, the signal is sent again a moment later.
     """
 
     def stop(number: int, _: FrameType | None) -> None:
         received.append(number)
         raise Stopped(number)
 
+    received.clear()
     drop = sys.unraisablehook
 
     def drop_or_repeat(dropped: sys.UnraisableHookArgs) -> None:
         error = dropped.exc_value
-        if not isinstance(error, KeyboardInterrupt):
+        if not isinstance(error, Stopped):
             drop(dropped)
             return
-        number = error.args[0] if isinstance(error, Stopped) else signal.SIGINT
-        timer = threading.Timer(_REPEAT_AFTER, _signal_main_thread, (number,))
+        timer = threading.Timer(_REPEAT_AFTER, _signal_main_thread, error.args)
         timer.daemon = True
         timer.start()
 
     sys.unraisablehook = drop_or_repeat
     # Windows has no SIGHUP.
-    numbers = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
-    defaults = [number for number in numbers if signal.getsignal(number) == signal.SIG_DFL]
+    names = ("SIGINT", "SIGTERM", "SIGHUP")
+    numbers = [getattr(signal, name) for name in names if hasattr(signal, name)]
+    unhandled = (signal.SIG_DFL, signal.default_int_handler)
+    defaults = [number for number in numbers if signal.getsignal(number) in unhandled]
     before = {number: signal.signal(number, stop) for number in defaults}
     try:
         yield
