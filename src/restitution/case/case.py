@@ -10,6 +10,7 @@ from pydantic import BeforeValidator, model_validator
 
 from restitution.case import needs
 from restitution.case.bodies import BodyTable
+from restitution.case.impacts import MOST_IMPACTS, ImpactsTable
 from restitution.case.interface import InterfaceTable, Yielding
 from restitution.case.materials import Property, with_library_adhesion, work_of_adhesion
 from restitution.case.models import Adhesion, adhesion_of
@@ -23,6 +24,7 @@ from restitution.contact.contact import Contact, smooth
 from restitution.contact.models import Adhesion as AdhesionModel
 from restitution.errors import CaseError, SurfaceError
 from restitution.numerics.grid import Grid
+from restitution.repeated.run_in import nominal_area
 from restitution.surfaces import Surface, composite
 from restitution.surfaces.refine import divided
 
@@ -65,6 +67,7 @@ class Case(Table):
     )
     pressure: Series[Pressure] | None = None
     unloading: UnloadingTable = UnloadingTable()
+    impacts: ImpactsTable | None = None
 
     @model_validator(mode="before")
     @classmethod
@@ -109,7 +112,69 @@ class Case(Table):
             raise ValueError(
                 "roughness.realisations: differs between the tables; give the same number in all"
             )
+        if self.impacts is not None:
+            self._check_impacts(self.impacts)
         return self
+
+    def _check_impacts(self, impacts: ImpactsTable) -> None:
+        if self.impact is None:
+            raise ValueError(
+                "[impacts]: needs [impact], whose velocities are those at which COR is measured"
+            )
+        if not isinstance(self.grid.refine, int):
+            raise ValueError("grid.refine: must be one number with [impacts]")
+        if self.realisations > 1:
+            raise ValueError(
+                "roughness.realisations: must be 1 with [impacts], which measures COR at many "
+                "places; remove this key"
+            )
+        for part in self.roughness:
+            if isinstance(part, GeneratedRoughness) and not part.periodic:
+                raise ValueError(
+                    "roughness.periodic: must be true with [impacts], because the surface repeats "
+                    "beyond its edges; remove this key"
+                )
+        if self.interface.plasticity == "truncated":
+            raise ValueError(
+                'interface.plasticity: "truncated" defines a single impact; remove this key to use '
+                "[impacts]"
+            )
+        if impacts.place == "track" and all(body.radius for body in self.bodies().values()):
+            raise ValueError(
+                'impacts.place: "track" needs a wall; give second.radius = "flat", or place = '
+                '"random"'
+            )
+        if (grid := self.grid.grid()) is not None:
+            self.impact_counts(grid)
+
+    def impact_counts(self, grid: Grid) -> dict[float, list[int]]:
+        """Number of impacts on `grid` up to each coverage, by velocity (m/s) of [impact].
+
+        Raises `CaseError` if a coverage is less than one contact, or needs too many impacts.
+        """
+        impacts, impact = self.impacts, self.impact
+        assert impacts is not None and impact is not None
+        if impacts.count is not None:
+            return {V: [impacts.count] for V in impact.series()}
+        counts, whole = {}, math.prod(grid.size)
+        for V in impact.series():
+            run_in = [V] if impacts.velocity is None else impacts.velocity
+            hardness = self.yielding().hardness
+            one = sum(nominal_area(self.pair(), hardness, v) for v in run_in) / len(run_in) / whole
+            counts[V] = [round(c / one) for c in sorted(set(impacts.coverage or []))]
+            if counts[V][0] < 1:
+                raise CaseError(
+                    f"impacts.coverage: {min(impacts.coverage or []):g} is less than one contact "
+                    f"at {V:.4g} m/s, which covers {one:.3g} of the surface; give at least "
+                    f"{1.01 * one:.2g}, or a larger grid"
+                )
+            if counts[V][-1] > MOST_IMPACTS:
+                raise CaseError(
+                    f"impacts.coverage: {max(impacts.coverage or []):g} takes {counts[V][-1]} "
+                    f"impacts at {V:.4g} m/s, more than {MOST_IMPACTS}; give less coverage, a "
+                    "smaller grid, or higher velocities"
+                )
+        return counts
 
     def _check_period(self) -> None:
         for name, body in self.bodies().items():

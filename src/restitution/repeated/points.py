@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Self
 
+import numpy as np
+
 from restitution.collision import Collision
 from restitution.contact.state import State
-from restitution.curve.columns import Record, column, magnitude
+from restitution.curve.columns import Record, array, column, magnitude
 
+FEWEST = 40  # smallest number of impacts for a statement on the steady state
+STEADY = 0.015  # largest change of COR between the last two quarters of a steady sequence
+_BLOCKS = 8
+CONFIDENCE = 0.95  # level of the interval of a mean
 
 @dataclass(frozen=True, kw_only=True)
 class RepeatedImpact(Record):
@@ -55,3 +63,132 @@ class RepeatedImpact(Record):
             pull_off_force=collision.pull_off_force,
             restitution_error=collision.restitution_error,
         )
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunInPoint(Record):
+    """COR at one velocity and one coverage, over many places; a row of `coverage.csv`."""
+
+    velocity: float = magnitude("impact_velocity_m_per_s", "m s-1", "impact velocity")
+    coverage: float = magnitude(
+        "coverage", "1", "area of the contacts of smooth bodies so far, over that of the surface"
+    )
+    impacts: float = magnitude("impacts", "1", "number of impacts so far")
+    places: float = magnitude("places", "1", "number of places at which COR was measured")
+    restitution: float = magnitude(
+        "restitution", "1", "mean coefficient of restitution over the places", high=1.0
+    )
+    restitution_std: float = magnitude(
+        "restitution_std", "1", "standard deviation of restitution over the places"
+    )
+    restitution_5: float = magnitude("restitution_5", "1", "5 % quantile of restitution", high=1.0)
+    restitution_25: float = magnitude(
+        "restitution_25", "1", "25 % quantile of restitution", high=1.0
+    )
+    restitution_50: float = magnitude("restitution_50", "1", "median of restitution", high=1.0)
+    restitution_75: float = magnitude(
+        "restitution_75", "1", "75 % quantile of restitution", high=1.0
+    )
+    restitution_95: float = magnitude(
+        "restitution_95", "1", "95 % quantile of restitution", high=1.0
+    )
+    sticking_share: float = magnitude(
+        "sticking_share", "1", "share of the places at which the bodies stick", high=1.0
+    )
+    indentation: float = column("max_indentation_m", "m", "mean maximum indentation")
+    force: float = column("force_N", "N", "mean normal force at maximum indentation")
+    contact_area: float = magnitude("contact_area_m2", "m2", "mean real contact area")
+    loading_work: float = magnitude("loading_work_J", "J", "mean work of loading")
+    pull_off_force: float = column("pull_off_force_N", "N", "mean pull-off force")
+    places_error: float = magnitude(
+        "places_error", "1", "half of the 95 % interval of the mean over the places"
+    )
+    solver_error: float = magnitude("solver_error", "1", "mean error of COR due to the solver")
+    discretisation_error: float = magnitude(
+        "discretisation_error", "1", "error of the mean due to the grid", optional=True
+    )
+    surface_scatter: float = magnitude(
+        "surface_scatter",
+        "1",
+        "error of the mean due to scatter between surfaces and sequences of places",
+        optional=True,
+    )
+    total_error: float = magnitude(
+        "total_error", "1", "root sum of squares of the errors above", optional=True
+    )
+
+    @classmethod
+    def of(cls, impacts: Sequence[RepeatedImpact]) -> Self:
+        """Combine impacts at one velocity, at several places of the same surfaces."""
+        e = array(impacts, "restitution")
+        one, n = impacts[0], len(impacts)
+        deviation = float(e.std(ddof=1))
+        quantiles = {
+            f"restitution_{q}": float(np.quantile(e, q / 100)) for q in (5, 25, 50, 75, 95)
+        }
+        means = ("indentation", "force", "contact_area", "loading_work", "pull_off_force")
+        return cls(
+            velocity=one.velocity,
+            coverage=one.coverage,
+            impacts=one.number,
+            places=float(n),
+            restitution=float(e.mean()),
+            restitution_std=deviation,
+            **quantiles,
+            sticking_share=float(np.mean(e == 0)),
+            **{name: float(array(impacts, name).mean()) for name in means},
+            places_error=half_interval(n) * deviation,
+            solver_error=float(array(impacts, "restitution_error").mean()),
+        )
+
+
+@dataclass(frozen=True)
+class SteadyState:
+    """Whether COR of a sequence of impacts has become steady, and its value.
+
+    `restitution` and `error` (95 %) are those of the last half of the sequence, and `trend` is the
+    change of COR per coverage within it. The sequence is `steady` if COR of the last two quarters
+    agrees within the error of their difference, and by `STEADY`.
+    """
+
+    velocity: float
+    impacts: int
+    coverage: float
+    restitution: float
+    error: float
+    trend: float
+    steady: bool
+
+    @classmethod
+    def of(cls, impacts: Sequence[RepeatedImpact]) -> SteadyState | None:
+        """None for fewer than `FEWEST` impacts."""
+        if len(impacts) < FEWEST:
+            return None
+        last = impacts[len(impacts) // 2 :]
+        e = array(last, "restitution")
+        # Impacts that follow each other see parts of one surface, so means of blocks are compared.
+        blocks = np.array([part.mean() for part in np.array_split(e, _BLOCKS)])
+        half = _BLOCKS // 2
+        error = half_interval(_BLOCKS) * float(blocks.std(ddof=1))
+        change = float(blocks[half:].mean() - blocks[:half].mean())
+        width = half_interval(half) * math.hypot(
+            *(float(part.std(ddof=1)) for part in (blocks[:half], blocks[half:]))
+        )
+        covered = last[-1].coverage - last[0].coverage
+        return cls(
+            velocity=impacts[-1].velocity,
+            impacts=len(impacts),
+            coverage=impacts[-1].coverage,
+            restitution=float(e.mean()),
+            error=error,
+            trend=change / (0.5 * covered) if covered > 0 else math.nan,
+            steady=abs(change) <= min(width, STEADY),
+        )
+
+
+def half_interval(n: int) -> float:
+    """Half of the 95 % interval of a mean of n values, in standard deviations of a value."""
+    # stdtrit is the quantile of Student's t. Importing scipy.stats would take 30 MB more memory.
+    from scipy.special import stdtrit
+
+    return float(stdtrit(n - 1, 0.5 * (1 + CONFIDENCE))) / math.sqrt(n)

@@ -1,6 +1,6 @@
 """Impacts one after the other: the surfaces keep their plastic displacement and move with it.
 
-Each impact sees a square window of both periodic surfaces, because its contact is small.
+Each impact sees a window of both periodic surfaces that contains its whole contact.
 """
 
 from __future__ import annotations
@@ -16,10 +16,11 @@ from numpy.typing import NDArray
 
 from restitution.arguments import typed
 from restitution.collision import Collision, collide
+from restitution.contact.bodies import Pair
 from restitution.contact.checks.edge import EdgeReachedError, largest_reach
 from restitution.contact.checks.resolution import predicted_radius
-from restitution.contact.bodies import Pair
 from restitution.contact.contact import Contact
+from restitution.contact.models import COMPANION
 from restitution.contact.path import unloading_path
 from restitution.contact.plasticity.cavity import ExpandingCavity
 from restitution.contact.plasticity.remembered import AGAIN, RememberedCavity
@@ -33,23 +34,27 @@ from restitution.surfaces import Surface
 from restitution.theory import ThorntonNing
 
 Array = NDArray[np.float64]
+Nodes = tuple[NDArray[np.intp], ...]
 Place = Literal["random", "same", "track"]
 Shift = tuple[int, int]
 
 # Width of the first window, in radii of the contact of smooth bodies, and the growth of a window
-# that turns out too small.
+# that is too small.
 _FIRST_WINDOW, _WIDER = 4.0, 1.3
 _ROUND = 8  # windows are multiples of this number of nodes, so that few operators are needed
+# Steps across the edges of a periodic surface are at most this multiple of those inside (rms).
+_MOST_STEP = 2.0
 
 
-class _Body:
-    """One periodic surface: its heights, and the largest pressure at which a node has yielded."""
+class _Worn:
+    """One body: its periodic heights, and the bound at which each node has yielded."""
 
-    def __init__(self, height: Array, *, remembers: bool) -> None:
-        self.height = height.copy()
+    def __init__(self, height: Array, *, yields: bool, remembers: bool) -> None:
+        self.height, self.yields = height.copy(), yields
         self.borne = np.zeros_like(height) if remembers else None
 
-    def window(self, centre: Shift, width: tuple[int, int]) -> tuple[NDArray[np.intp], ...]:
+    def nodes(self, centre: Shift, width: tuple[int, int]) -> Nodes:
+        """Indices of a window around the node `centre`."""
         return np.ix_(
             *(
                 (np.arange(w) - w // 2 + c) % n
@@ -59,20 +64,19 @@ class _Body:
 
 
 class RunIn:
-    """Two bodies that hit each other again and again.
-
-    The roughness of `contact` belongs to the body that yields; of two that yield, to the first.
-    `contact` itself stays as it is.
+    """Two bodies that hit each other again and again; which of them yields, `contact` says.
 
     Args:
-        contact: The first impact. Its surface is one period, which repeats without end.
-        other: Roughness of the other body (on the grid of `contact`); None if it is smooth.
-        place: "random": both bodies are hit at new places; "same": at one place; "track": the
-            other body at one place, as a wall, and the rough one at new places.
+        contact: Contact of the new bodies. Its surface is that of the first body, one period that
+            repeats without end.
+        other: Surface of the second body, on the same grid; None if it is smooth.
+        place: "random": both bodies are hit at new places; "same": both at one place; "track": the
+            wall of the pair at one place, and the sphere at new ones.
         seed: Seed of the places.
 
     Raises:
-        CaseError: The contact is a periodic one, or its model of plasticity is `Truncated`.
+        CaseError: The contact is periodic or `Truncated`, a surface does not repeat, or "track" is
+            given without a wall.
     """
 
     @typed
@@ -81,32 +85,29 @@ class RunIn:
         contact: Contact,
         other: Surface | None = None,
         *,
-        place: Place = "random",
+        place: str = "random",
         seed: int = 0,
     ) -> None:
-        if contact.periodic:
-            raise CaseError("contact: repeated impacts need a sphere; leave periodic out")
-        if not contact.plasticity.bounds_solve:
-            raise CaseError(
-                f'plasticity: "{contact.plasticity.label}" defines a single impact; use '
-                "ConstantBound or ExpandingCavity"
-            )
-        if place not in get_args(Place):
-            raise CaseError(f"place: {place!r} is not one of {', '.join(get_args(Place))}")
-        if other is not None and other.grid != contact.grid:
-            raise CaseError("other: is on another grid; give a surface on the grid of contact")
+        _check(contact, other, place)
         remembers = isinstance(contact.plasticity, ExpandingCavity)
-        heights = contact.surface.height, (
-            np.zeros(contact.grid.nodes) if other is None else other.height
+        smooth = np.zeros(contact.grid.nodes)
+        self._origins = contact.surface.provenance, {"source": "smooth"}
+        if other is not None:
+            self._origins = contact.surface.provenance, other.provenance
+        self._bodies = tuple(
+            _Worn(
+                height,
+                yields=contact.yields in (None, "both", name),
+                remembers=remembers,
+            )
+            for name, height in (
+                ("first", contact.surface.height),
+                ("second", smooth if other is None else other.height),
+            )
         )
-        self._bodies = [_Body(height, remembers=remembers) for height in heights]
-        yields = (True, True) if contact.yields in (None, "both") else (True, False)
-        self._yielding = [body for body, soft in zip(self._bodies, yields, strict=True) if soft]
         self._contact, self._place = contact, place
         self._places = np.random.default_rng(seed)
-        self._width = 0
-        self._count, self._coverage = 0, 0.0
-        self._others = [contact.surface.provenance, None if other is None else other.provenance]
+        self._width, self._count, self._coverage = 0, 0, 0.0
 
     @property
     def count(self) -> int:
@@ -120,21 +121,22 @@ class RunIn:
 
     @property
     def surfaces(self) -> tuple[Surface, Surface]:
-        """The surfaces of the two bodies now, the rough one first."""
-        grid = self._contact.grid
+        """The surfaces of the first and the second body now."""
         first, second = (
             Surface(
                 freeze(body.height.copy()),
-                grid,
-                {**(origin or {"source": "smooth"}), "impacts": self._count},
+                self._contact.grid,
+                {**origin, "impacts": self._count, "coverage": self._coverage},
             )
-            for body, origin in zip(self._bodies, self._others, strict=True)
+            for body, origin in zip(self._bodies, self._origins, strict=True)
         )
         return first, second
 
     def coverage_of(self, velocity: float) -> float:
         """Coverage of one impact at `velocity` (m/s)."""
-        return nominal_area(self._contact, velocity) / math.prod(self._contact.grid.size)
+        contact = self._contact
+        area = nominal_area(contact.pair, contact.hardness, velocity)
+        return area / math.prod(contact.grid.size)
 
     @typed
     def impacts(self, velocities: float | Iterable[float]) -> Iterator[RepeatedImpact]:
@@ -150,17 +152,17 @@ class RunIn:
             DomainError: A contact is larger than the surface.
             NotConvergedError: A solve did not converge.
         """
-        each = repeat(velocities) if isinstance(velocities, (int, float)) else velocities
-        for velocity in each:
-            yield self.hit(float(velocity), *self._next_place())
+        listed = repeat(velocities) if isinstance(velocities, (int, float)) else velocities
+        for velocity in listed:
+            yield self.hit(float(velocity), *self._next_places())
 
     def hit(self, velocity: float, first: Shift, second: Shift) -> RepeatedImpact:
         """Let the bodies collide once, and change their surfaces.
 
         Args:
             velocity: Impact velocity (m/s).
-            first: Node of the rough body that is hit.
-            second: Node of the other body that is hit.
+            first: Node of the first body at which it is hit.
+            second: Node of the second body at which it is hit.
         """
         state, collision, end = self._collide(velocity, (first, second))
         self._wear((first, second), end)
@@ -168,8 +170,8 @@ class RunIn:
         self._coverage += self.coverage_of(velocity)
         return RepeatedImpact.of(self._count, self._coverage, velocity, state, collision)
 
-    def probe(self, velocity: float, places: int, seed: int) -> list[RepeatedImpact]:
-        """Let the bodies collide at random places, each time with the surfaces as they are now.
+    def probe(self, velocity: float, places: int, seed: int) -> Iterator[RepeatedImpact]:
+        """Let the bodies collide at other places, each time with the surfaces as they are now.
 
         Args:
             velocity: Impact velocity (m/s).
@@ -177,46 +179,44 @@ class RunIn:
             seed: Seed of the places.
         """
         random = np.random.default_rng(seed)
-        results = []
         for _ in range(places):
-            at = self._random_place(random), self._random_place(random)
-            state, collision, _ = self._collide(velocity, at)
-            results.append(
-                RepeatedImpact.of(self._count, self._coverage, velocity, state, collision)
-            )
-        return results
+            state, collision, _ = self._collide(velocity, self._draw(random))
+            yield RepeatedImpact.of(self._count, self._coverage, velocity, state, collision)
 
-    def _random_place(self, random: np.random.Generator) -> Shift:
+    def _draw(self, random: np.random.Generator) -> tuple[Shift, Shift]:
         nx, ny = self._contact.grid.nodes
-        return int(random.integers(nx)), int(random.integers(ny))
-
-    def _next_place(self) -> tuple[Shift, Shift]:
-        centre = tuple(n // 2 for n in self._contact.grid.nodes)
-        first, second = self._random_place(self._places), self._random_place(self._places)
+        middle = nx // 2, ny // 2
+        # Shares of the period, so that a coarser grid is hit at the same places.
+        first, second = ((int(x * nx), int(y * ny)) for x, y in random.random((2, 2)))
         if self._place == "same":
-            return centre, centre
-        return first, centre if self._place == "track" else second
+            return middle, middle
+        if self._place == "track":
+            wall_first = math.isinf(self._contact.pair.first.radius)
+            return (middle, second) if wall_first else (first, middle)
+        return first, second
 
-    def _collide(
-        self, velocity: float, at: tuple[Shift, Shift]
-    ) -> tuple[State, Collision, State]:
+    def _next_places(self) -> tuple[Shift, Shift]:
+        return self._draw(self._places)
+
+    def _collide(self, velocity: float, at: tuple[Shift, Shift]) -> tuple[State, Collision, State]:
         """Deepest state, collision, and the state after separation."""
-        nodes, spacing = self._contact.grid.nodes, min(self._contact.grid.spacing)
+        nodes, spacing = min(self._contact.grid.nodes), min(self._contact.grid.spacing)
         if not self._width:
-            radius = math.sqrt(nominal_area(self._contact, velocity) / math.pi)
-            self._width = _rounded(_FIRST_WINDOW * radius / spacing)
+            area = nominal_area(self._contact.pair, self._contact.hardness, velocity)
+            self._width = _rounded(_FIRST_WINDOW * math.sqrt(area / math.pi) / spacing)
         while True:
             contact = self._window(at)
+            whole = self._width >= nodes
             try:
                 state = solve_at_velocity(contact, velocity)
-                half = 0.5 * spacing * min(contact.grid.nodes)
-                if min(contact.grid.nodes) >= min(nodes) or self._reach(contact, state) < half:
+                if whole or largest_reach(contact, state.indentation) < 0.5 * spacing * self._width:
                     break
             except EdgeReachedError as error:
-                if min(contact.grid.nodes) >= min(nodes):
+                if whole:
                     raise DomainError(
-                        f"the contact at {velocity:.4g} m/s is larger than the surface; use a "
-                        "larger surface or a lower velocity"
+                        f"the contact at {velocity:.4g} m/s is larger than the surface, which "
+                        "repeats; use a larger surface or a lower velocity",
+                        argument="velocity",
                     ) from error
             self._width = _rounded(_WIDER * self._width)
         if not contact.adhesive:
@@ -224,70 +224,92 @@ class RunIn:
         path = list(unloading_path(state))
         return state, collide(state, path), path[-1]
 
-    def _reach(self, contact: Contact, state: State) -> float:
-        return largest_reach(contact, state.indentation)
-
     def _window(self, at: tuple[Shift, Shift]) -> Contact:
-        grid = self._contact.grid
-        width = min(self._width, grid.nodes[0]), min(self._width, grid.nodes[1])
-        parts = [body.window(centre, width) for body, centre in zip(self._bodies, at, strict=True)]
-        height = sum(
-            body.height[part] for body, part in zip(self._bodies, parts, strict=True)
-        )
-        plasticity = self._contact.plasticity
-        if isinstance(plasticity, ExpandingCavity):
-            borne = np.minimum.reduce(
-                [
-                    body.borne[part]
-                    for body, part in zip(self._bodies, parts, strict=True)
-                    if body in self._yielding
-                ]
+        (nx, ny), spacing = self._contact.grid.nodes, self._contact.grid.spacing
+        width = min(self._width, nx), min(self._width, ny)
+        parts = [body.nodes(centre, width) for body, centre in zip(self._bodies, at, strict=True)]
+        seen = list(zip(self._bodies, parts, strict=True))
+        height = sum((body.height[part] for body, part in seen), np.zeros(width))
+        model = self._contact.plasticity
+        if isinstance(model, ExpandingCavity):
+            borne = [body.borne[part] for body, part in seen if body.yields and body.borne is not None]
+            model = RememberedCavity(
+                model.yield_strength, model.tangent_modulus, np.minimum.reduce(borne)
             )
-            plasticity = RememberedCavity(
-                plasticity.yield_strength, plasticity.tangent_modulus, borne
-            )
-        window = Surface(freeze(height), Grid(width, grid.spacing), {"source": "repeated"})
-        return replace(self._contact, surface=window, plasticity=plasticity)
+        companion = self._contact.surface.provenance.get(COMPANION, "")
+        origin = {"source": "repeated impacts", COMPANION: companion}
+        surface = Surface(freeze(height), Grid(width, spacing), origin)
+        return replace(self._contact, surface=surface, plasticity=model)
 
     def _wear(self, at: tuple[Shift, Shift], end: State) -> None:
-        """Lower the surfaces by the plastic displacement; of two bodies, the softer one yields."""
+        """Lower the surfaces by the plastic displacement; at each node the softer body yields."""
         given = end.plastic_displacement
         if not given.any():
             return
         width = end.contact.grid.nodes
-        parts = {
-            id(body): body.window(centre, width)
-            for body, centre in zip(self._bodies, at, strict=True)
-        }
         bound = np.broadcast_to(end.bound, width)
-        soft = [
-            np.ones(width, dtype=bool)
-            if body.borne is None
-            else AGAIN * body.borne[parts[id(body)]] <= bound
-            for body in self._yielding
+        worn = [
+            (body, body.nodes(centre, width))
+            for body, centre in zip(self._bodies, at, strict=True)
+            if body.yields
         ]
-        shares = np.sum(soft, axis=0)
-        for body, softer in zip(self._yielding, soft, strict=True):
-            part = parts[id(body)]
-            body.height[part] -= np.where(softer, given / shares, 0.0)
+        soft = [
+            np.ones(width, dtype=bool) if body.borne is None else AGAIN * body.borne[part] <= bound
+            for body, part in worn
+        ]
+        share = given / np.sum(soft, axis=0)
+        for (body, part), softer in zip(worn, soft, strict=True):
+            body.height[part] -= np.where(softer, share, 0.0)
             if body.borne is not None:
                 old = body.borne[part]
-                higher = (given > 0) & (bound > AGAIN * old)
+                higher = softer & (given > 0) & (bound > AGAIN * old)
                 body.borne[part] = np.where(higher, bound, old)
 
 
-def nominal_area(contact: Contact, velocity: float) -> float:
+def nominal_area(pair: Pair, hardness: float, velocity: float) -> float:
     """Area (m²) of the contact of smooth bodies at the impact velocity (m/s).
 
     Source: C. Thornton, Z. Ning, Powder Technol. 99 (1998) 154–162, for the indentation.
     """
-    pair: Pair = contact.pair
     if pair.mass is None:
         raise CaseError("density: is missing; an impact velocity needs the density of both bodies")
-    p_y = min(contact.hardness, pair.contact_modulus)
-    smooth = ThorntonNing(pair.radius, pair.contact_modulus, p_y)
+    smooth = ThorntonNing(pair.radius, pair.contact_modulus, min(hardness, pair.contact_modulus))
     depth = float(smooth.indentation_from_velocity(velocity, pair.mass))
-    return math.pi * predicted_radius(pair, depth, contact.hardness) ** 2
+    return math.pi * predicted_radius(pair, depth, hardness) ** 2
+
+
+def repeats(surface: Surface) -> bool:
+    """Whether opposite edges of `surface` match."""
+    z = surface.height
+    for axis in (0, 1):
+        inside = float(np.mean(np.diff(z, axis=axis) ** 2))
+        across = float(np.mean((z.take(0, axis) - z.take(-1, axis)) ** 2))
+        if across > _MOST_STEP**2 * inside:
+            return False
+    return True
+
+
+def _check(contact: Contact, other: Surface | None, place: str) -> None:
+    if place not in get_args(Place):
+        raise CaseError(f"place: {place!r} is not one of {', '.join(get_args(Place))}")
+    if contact.periodic:
+        raise CaseError("contact: two flat bodies do not collide; give a sphere and no periodic")
+    if not contact.plasticity.bounds_solve:
+        raise CaseError(
+            f'plasticity: "{contact.plasticity.label}" defines a single impact; use '
+            "ConstantBound or ExpandingCavity"
+        )
+    if other is not None and other.grid != contact.grid:
+        raise CaseError("other: is on another grid; give a surface on the grid of contact")
+    for surface in (contact.surface, other):
+        if surface is not None and not repeats(surface):
+            raise CaseError(
+                "surface: its opposite edges do not match, so it does not repeat; use a periodic "
+                "surface"
+            )
+    walls = [math.isinf(body.radius) for body in (contact.pair.first, contact.pair.second)]
+    if place == "track" and not any(walls):
+        raise CaseError('place: "track" needs a wall; give one body the radius inf')
 
 
 def _rounded(width: float) -> int:
