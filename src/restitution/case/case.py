@@ -22,12 +22,15 @@ from restitution.contact.bodies import Pair
 from restitution.contact.cohesive.law import Cohesive
 from restitution.contact.contact import Contact, smooth
 from restitution.contact.models import Adhesion as AdhesionModel
+from restitution.display import quantity
 from restitution.errors import CaseError, SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.repeated.run_in import nominal_area
 from restitution.surfaces import Surface, composite
 from restitution.surfaces.refine import divided
 
+# Smallest width of a grid with [impacts], in diameters of the contact of smooth bodies.
+_WIDEST = 1.6
 # Tables that can prescribe the depths, which are states of loading. Each table prescribes one
 # quantity: indentation, load, impact velocity or nominal pressure.
 DEPTHS = ("indentation", "load", "impact", "pressure")
@@ -150,17 +153,22 @@ class Case(Table):
     def impact_counts(self, grid: Grid) -> dict[float, list[int]]:
         """Number of impacts on `grid` up to each coverage, by velocity (m/s) of [impact].
 
-        Raises `CaseError` if a coverage is less than one contact, or needs too many impacts.
+        Raises `CaseError` if a coverage is less than one contact, or needs too many impacts, or if
+        a contact is as large as the grid.
         """
         impacts, impact = self.impacts, self.impact
         assert impacts is not None and impact is not None
-        if impacts.count is not None:
-            return {V: [impacts.count] for V in impact.series()}
         counts, whole = {}, math.prod(grid.size)
         for V in impact.series():
-            run_in = [V] if impacts.velocity is None else impacts.velocity
-            hardness = self.yielding().hardness
-            one = sum(nominal_area(self.pair(), hardness, v) for v in run_in) / len(run_in) / whole
+            run_in = impacts.velocity or [V]
+            areas = [
+                nominal_area(self.pair(), self.yielding().hardness, v) for v in (V, *run_in)
+            ]
+            _require_wide(grid, max(areas), max(V, *run_in))
+            if impacts.count is not None:
+                counts[V] = [impacts.count]
+                continue
+            one = sum(areas[1:]) / len(run_in) / whole
             counts[V] = [round(c / one) for c in sorted(set(impacts.coverage or []))]
             if counts[V][0] < 1:
                 raise CaseError(
@@ -440,3 +448,16 @@ class Case(Table):
         """The prescribed indentations (m), loads (N), velocities (m/s) or pressures (Pa)."""
         tables = (self.indentation, self.load, self.impact, self.pressure)
         return next(table.series() for table in tables if table is not None)  # only one is given
+
+
+def _require_wide(grid: Grid, area: float, velocity: float) -> None:
+    """Raise `CaseError` if a contact of this area (m²) covers most of `grid`."""
+    wide = _WIDEST * 2 * math.sqrt(area / math.pi)
+    if wide <= min(grid.size):
+        return
+    nodes = math.ceil(wide / min(grid.spacing))
+    raise CaseError(
+        f"grid.nodes: the grid of {quantity(min(grid.size), 'm')} is too small for [impacts] at "
+        f"{velocity:.4g} m/s, where the contact is {quantity(wide / _WIDEST, 'm')} wide; give at "
+        f"least {nodes} nodes, or lower velocities"
+    )

@@ -362,5 +362,14 @@ def export(
         str | None,
         option("VELOCITY", 'Impact velocity, such as "1 m/s"; not needed for csv.'),
     ] = None,
+    coverage: Annotated[
+        str | None,
+        option(
+            "COVERAGE",
+            "How many times earlier impacts have covered the surfaces, such as 3; the runs need "
+            "the table [impacts].",
+            show_default="the first impact",
+        ),
+    ] = None,
 ) -> None:
     """Write the input of a DEM code to OUT, with the COR of every pair at VELOCITY."""

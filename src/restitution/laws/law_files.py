@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from restitution.errors import CaseError, OutputError, first_problem
-from restitution.laws.law import STORED_LAW, Law
+from restitution.laws.law import QUANTILES, STORED_LAW, Law, LawPoint
 from restitution.results.checksums import check_file
 from restitution.results.interruption import hold_signals
 from restitution.results.writer import make_folder, replace_file, write_checksums, write_table
@@ -91,6 +91,7 @@ def law_rows(law: Law) -> list[dict[str, float | str]]:
             "restitution_error": point.error,
             "restitution_error_includes": law.conventions.restitution_error,
             "resolved": point.resolved,
+            **_distribution(point),
             "compact_fit": fitted,
             "compact_fit_error": abs(fitted - point.restitution),
             "loading_work_J": point.loading_work,
@@ -111,6 +112,15 @@ def law_rows(law: Law) -> list[dict[str, float | str]]:
         }
         for point, fitted in zip(law.points, fit.tolist(), strict=True)
     ]
+
+
+def _distribution(point: LawPoint) -> dict[str, float]:
+    """The distribution of COR over places; no columns if it is unknown."""
+    if point.deviation is None or point.quantiles is None:
+        return {}
+    return {"restitution_std": point.deviation} | {
+        f"restitution_{q}": value for q, value in zip(QUANTILES, point.quantiles, strict=True)
+    }
 
 
 def _laws(law: Law) -> list[dict[str, float | str]]:

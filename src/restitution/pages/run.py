@@ -17,6 +17,7 @@ from restitution.curve.oblique import ObliquePoint
 from restitution.display import quantity
 from restitution.pages.methods import methods
 from restitution.pages.page import Cell, Drawing, Listing, Page, PageTable, write_page
+from restitution.pages.run_in import run_in_parts
 from restitution.plots.cor import Abscissa
 from restitution.plots.oblique import has_oblique, oblique_figure
 from restitution.plots.run import (
@@ -41,6 +42,8 @@ def write_run_page(out: Path) -> Path:
         parts += [_restitution(results, abscissa) for abscissa in abscissae(results)]
         if run.oblique and has_oblique(results):
             parts.append(_oblique_drawing(results, run.oblique))
+        if run.run_in:
+            parts += run_in_parts(run.run_in, run.impacts, summary["run_in"])
         parts.append(_force(results))
         if has_map(results):
             parts.append(_pressure(results))
