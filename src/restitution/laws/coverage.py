@@ -58,15 +58,26 @@ def at_coverage(law: Law, coverage: float) -> Law:
     COR is linear in the coverage between those of the run; its error is the larger one of both.
     Raises `CaseError` if the run had no repeated impacts, and `DomainError` outside its coverages.
     """
+    if law.coverage is not None and math.isclose(law.coverage, coverage):
+        return law
     if not law.run_in:
         raise CaseError(
-            f"coverage: {law.pair} has only the first impact; add [impacts] coverage = "
-            f"{coverage or 1:g} to its case and run it again"
+            f"coverage: the law of {law.pair} is that of one coverage only; add [impacts] "
+            f"coverage = {coverage or 1:g} to its case and run it again"
         )
     points = [_point(law, point, coverage) for point in law.points if _of(law, point.velocity)]
     if not points:
         raise CaseError(f"coverage: {law.pair} has no velocity with repeated impacts; run it again")
-    return replace(law, points=tuple(points), coverage=coverage, sticks_below=None, fit=None, laws=())
+    return replace(
+        law,
+        points=tuple(points),
+        coverage=coverage,
+        run_in=(),
+        sticks_below=None,
+        sticks_below_error=None,
+        fit=None,
+        laws=(),
+    )
 
 
 def _of(law: Law, velocity: float) -> list[CoveredPoint]:

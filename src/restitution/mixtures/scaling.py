@@ -136,6 +136,7 @@ class FamilyLaws:
             force=mean("force", 2),
             pull_off_force=None if None in pull_off else mean("pull_off_force", 1),
             resolved=all(estimates[k].resolved for k in used),
+            deviation=None if self.laws[0].coverage is None else mean("deviation", 0),
         )
 
 
