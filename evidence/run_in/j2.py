@@ -21,8 +21,9 @@ HERE = Path(__file__).parent
 ROUGH = HERE.parent / "rough_plastic"
 sys.path.insert(0, str(ROUGH))
 
-from contact import Contact, State  # noqa: E402
 from solve import work  # noqa: E402
+
+from contact import Contact, State  # noqa: E402
 
 RADIUS = 500.0  # µm
 

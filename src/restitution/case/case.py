@@ -157,13 +157,12 @@ class Case(Table):
         a contact is as large as the grid.
         """
         impacts, impact = self.impacts, self.impact
-        assert impacts is not None and impact is not None
+        assert impacts is not None
+        assert impact is not None
         counts, whole = {}, math.prod(grid.size)
         for V in impact.series():
             run_in = impacts.velocity or [V]
-            areas = [
-                nominal_area(self.pair(), self.yielding().hardness, v) for v in (V, *run_in)
-            ]
+            areas = [nominal_area(self.pair(), self.yielding().hardness, v) for v in (V, *run_in)]
             _require_wide(grid, max(areas), max(V, *run_in))
             if impacts.count is not None:
                 counts[V] = [impacts.count]

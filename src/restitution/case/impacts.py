@@ -47,12 +47,12 @@ class ImpactsTable(Table):
     places: Annotated[int, Field(ge=2, le=MOST_PLACES)] = key(
         32, "number of places at which COR is measured at each coverage, as mean and distribution"
     )
-    velocity: Annotated[
-        list[Velocity] | None, _Listed, Field(min_length=1, max_length=10_000)
-    ] = key(
-        None,
-        "velocity of the impacts that run the surfaces in; of a list, the velocities take turns",
-        default="each velocity of `[impact]` has surfaces of its own",
+    velocity: Annotated[list[Velocity] | None, _Listed, Field(min_length=1, max_length=10_000)] = (
+        key(
+            None,
+            "velocity of the impacts that run the surfaces in; the velocities of a list take turns",
+            default="each velocity of `[impact]` has surfaces of its own",
+        )
     )
     weights: list[Any] | None = key(
         None,

@@ -113,7 +113,9 @@ def _elsewhere(law: Law, velocity: float) -> str:
 def _covered(law: Law, velocity: float) -> list[str]:
     if law.coverage is None:
         return []
-    deviation = np.interp(math.log(velocity), np.log(law.column("velocity")), law.column("deviation"))
+    deviation = np.interp(
+        math.log(velocity), np.log(law.column("velocity")), law.column("deviation")
+    )
     return [
         f"  e is that of surfaces that earlier impacts have covered {law.coverage:g} times; its "
         f"standard deviation over places is {deviation:.2g}"

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import cast
 
 import numpy as np
 
 from restitution.errors import CaseError, DomainError
-from restitution.laws.law import CoveredPoint, Law, LawPoint
+from restitution.laws.law import CoveredPoint, Law, LawPoint, Quantiles
 from restitution.repeated.points import RunInPoint
 
 _SAME = 0.02  # coverages whose difference is below this share of the largest one count as equal
@@ -113,5 +114,5 @@ def _point(law: Law, point: LawPoint, coverage: float) -> LawPoint:
         pull_off_force=at("pull_off_force"),
         pull_off_error=None,
         deviation=at("deviation"),
-        quantiles=tuple(float(np.interp(coverage, C, of)) for of in quantiles.T),
+        quantiles=cast(Quantiles, tuple(float(np.interp(coverage, C, of)) for of in quantiles.T)),
     )

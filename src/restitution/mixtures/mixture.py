@@ -93,9 +93,9 @@ def _computed(
 ) -> FamilyLaws:
     radii = sorted(radius for name, radius in cases if name == family.name)
     folders = [out.folder_of(cases[family.name, radius]) for radius in radii]
-    laws, coverage = map(bare_law, folders), family.mixture.coverage
+    laws, coverage = list(map(bare_law, folders)), family.mixture.coverage
     if coverage is not None:
-        laws = (at_coverage(law, coverage) for law in laws)
+        laws = [at_coverage(law, coverage) for law in laws]
     return FamilyLaws(family, tuple(laws))
 
 

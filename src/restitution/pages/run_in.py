@@ -53,8 +53,13 @@ def run_in_parts(
         ),
     )
     surfaces = [
-        [one["sequence"], name, of["file"], *(quantity(of[key], "m") for key in ("Sq_m", "Sz_m"))]
-        + [of["Ssk"], of["Sku"], of["Sdq"]]
+        [
+            one["sequence"],
+            name,
+            of["file"],
+            *(quantity(of[key], "m") for key in ("Sq_m", "Sz_m")),
+            *(of[key] for key in ("Ssk", "Sku", "Sdq")),
+        ]
         for one in summary["sequences"]
         for name, of in one["surfaces"].items()
     ]
@@ -62,7 +67,7 @@ def run_in_parts(
         "Surfaces after the impacts",
         ["sequence", "body", "file", "Sq", "Sz", "Ssk", "Sku", "Sdq"],
         surfaces,
-        ["Each file is a scan for another case: kind = \"measured\", file = \"…\"."],
+        ['Each file is a scan for another case: kind = "measured", file = "…".'],
     )
 
 

@@ -31,9 +31,7 @@ def coverage_curves(points: Sequence[RunInPoint]) -> list[CoverageCurve]:
     for point in points:
         by_velocity.setdefault(point.velocity, []).append(point)
     levels = zip(*(by_velocity[V] for V in sorted(by_velocity)), strict=True)
-    return [
-        CoverageCurve(float(array(level, "coverage").mean()), list(level)) for level in levels
-    ]
+    return [CoverageCurve(float(array(level, "coverage").mean()), list(level)) for level in levels]
 
 
 def run_in_figure(points: Sequence[RunInPoint], title: str = "") -> Figure:

@@ -18,6 +18,7 @@ STEADY = 0.015  # largest change of COR between the last two quarters of a stead
 _BLOCKS = 8
 CONFIDENCE = 0.95  # level of the interval of a mean
 
+
 @dataclass(frozen=True, kw_only=True)
 class RepeatedImpact(Record):
     """One impact of a sequence, in SI units; its fields are the columns of `impacts.csv`."""
@@ -39,9 +40,7 @@ class RepeatedImpact(Record):
         "plastic_volume_m3", "m3", "volume by which yielding has lowered the surfaces"
     )
     pull_off_force: float = column("pull_off_force_N", "N", "largest tension during unloading")
-    restitution_error: float = magnitude(
-        "restitution_error", "1", "error of COR due to the solver"
-    )
+    restitution_error: float = magnitude("restitution_error", "1", "error of COR due to the solver")
 
     @classmethod
     def of(

@@ -41,6 +41,7 @@ Shift = tuple[int, int]
 # Width of the first window, in radii of the contact of smooth bodies, and the growth of a window
 # that is too small.
 _FIRST_WINDOW, _WIDER = 4.0, 1.3
+_ATTRACTED = 5.0  # gap beyond which attraction is neglected, in its lengths
 _ROUND = 8  # windows are multiples of this number of nodes, so that few operators are needed
 # Steps across the edges of a periodic surface are at most this multiple of those inside (rms).
 _MOST_STEP = 2.0
@@ -51,7 +52,8 @@ class _Worn:
 
     def __init__(self, height: Array, *, yields: bool, remembers: bool) -> None:
         self.height, self.yields = height.copy(), yields
-        self.borne = np.zeros_like(height) if remembers else None
+        self.borne = np.zeros_like(height)
+        self.remembers = remembers
 
     def nodes(self, centre: Shift, width: tuple[int, int]) -> Nodes:
         """Indices of a window around the node `centre`."""
@@ -91,9 +93,10 @@ class RunIn:
         _check(contact, other, place)
         remembers = isinstance(contact.plasticity, ExpandingCavity)
         smooth = np.zeros(contact.grid.nodes)
-        self._origins = contact.surface.provenance, {"source": "smooth"}
-        if other is not None:
-            self._origins = contact.surface.provenance, other.provenance
+        self._origins = [
+            {"source": "smooth"} if surface is None else surface.provenance
+            for surface in (contact.surface, other)
+        ]
         self._bodies = tuple(
             _Worn(
                 height,
@@ -107,6 +110,11 @@ class RunIn:
         )
         self._contact, self._place = contact, place
         self._places = np.random.default_rng(seed)
+        adhesion = contact.adhesion
+        self._range = 0.0  # how far the bodies attract each other (m)
+        if adhesion is not None:
+            length = max(adhesion.length(contact.pair), adhesion.equilibrium_separation)
+            self._range = _ATTRACTED * length
         self._width, self._count, self._coverage = 0, 0, 0.0
 
     @property
@@ -209,7 +217,8 @@ class RunIn:
             whole = self._width >= nodes
             try:
                 state = solve_at_velocity(contact, velocity)
-                if whole or largest_reach(contact, state.indentation) < 0.5 * spacing * self._width:
+                reach = largest_reach(contact, state.indentation + self._range)
+                if whole or reach < 0.5 * spacing * self._width:
                     break
             except EdgeReachedError as error:
                 if whole:
@@ -232,7 +241,7 @@ class RunIn:
         height = sum((body.height[part] for body, part in seen), np.zeros(width))
         model = self._contact.plasticity
         if isinstance(model, ExpandingCavity):
-            borne = [body.borne[part] for body, part in seen if body.yields and body.borne is not None]
+            borne = [body.borne[part] for body, part in seen if body.yields]
             model = RememberedCavity(
                 model.yield_strength, model.tangent_modulus, np.minimum.reduce(borne)
             )
@@ -253,14 +262,11 @@ class RunIn:
             for body, centre in zip(self._bodies, at, strict=True)
             if body.yields
         ]
-        soft = [
-            np.ones(width, dtype=bool) if body.borne is None else AGAIN * body.borne[part] <= bound
-            for body, part in worn
-        ]
+        soft = [AGAIN * body.borne[part] <= bound for body, part in worn]
         share = given / np.sum(soft, axis=0)
         for (body, part), softer in zip(worn, soft, strict=True):
             body.height[part] -= np.where(softer, share, 0.0)
-            if body.borne is not None:
+            if body.remembers:
                 old = body.borne[part]
                 higher = softer & (given > 0) & (bound > AGAIN * old)
                 body.borne[part] = np.where(higher, bound, old)

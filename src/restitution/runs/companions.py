@@ -7,7 +7,6 @@ or other materials, and are compared with the first. COR is compared at equal im
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
@@ -83,8 +82,6 @@ def _failed(error: RestitutionError) -> bool:
 def _solve(contact: Contact, depth: float, start: State | None) -> State:
     # Only a loading path is long enough to be worth continuing.
     return solve(contact, depth, start=start if interface_of(contact).follows_path else None)
-
-
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ from restitution.repeated.run_in import RunIn, repeats
 from restitution.results.schema import COVERAGE_FILE, IMPACTS_FILE
 from restitution.results.writer import ResultsFolder, replace_file
 from restitution.runs.log import Say, ignore
-from restitution.surfaces import Surface, composite, describe
+from restitution.surfaces import Surface, describe
 from restitution.surfaces.refine import coarsen
 
 OTHERS = 2  # number of additional sequences, on other surfaces, for the scatter
@@ -163,9 +163,7 @@ def _sequences(
         yield _sequence(runs, table, measured, seed)
 
 
-def _sequence(
-    runs: RunIn, table: ImpactsTable, measured: Sequence[float], seed: int
-) -> _Sequence:
+def _sequence(runs: RunIn, table: ImpactsTable, measured: Sequence[float], seed: int) -> _Sequence:
     impacts: list[RepeatedImpact] = []
     points = _measure(runs, table, measured, seed)
     following = runs.impacts(table.velocities(measured[0], seed))
@@ -182,9 +180,7 @@ def _sequence(
 def _measure(
     runs: RunIn, table: ImpactsTable, velocities: Sequence[float], seed: int
 ) -> list[RunInPoint]:
-    return [
-        RunInPoint.of(list(runs.probe(V, table.places, seed + _PROBES))) for V in velocities
-    ]
+    return [RunInPoint.of(list(runs.probe(V, table.places, seed + _PROBES))) for V in velocities]
 
 
 def _with_errors(
