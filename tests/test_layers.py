@@ -19,6 +19,7 @@ ROOMS = (
     "contact",
     "collision",
     "curve",
+    "repeated",
     "case",
     "results",
     "laws",

@@ -1,14 +1,17 @@
 """A case with [impacts]: its tables, surfaces, errors and law."""
 
 import csv
+import io
 
 import numpy as np
 import pytest
 from tests.tolerance import approx
 
-from restitution import RestitutionError, export, law_of, open_results, read_surface, run
+from restitution import RestitutionError, open_results, read_surface, run
 from restitution.case.case_file import parse_case
+from restitution.dem.export import export
 from restitution.laws.coverage import at_coverage, coverage_of
+from restitution.laws.from_results import bare_law
 from restitution.repeated.points import RepeatedImpact, SteadyState
 from restitution.repeated.velocities import drawn, in_turn, rayleigh
 
@@ -25,7 +28,7 @@ CASE = {
         "correlation_length": "1 um",
         "seed": 1,
     },
-    "grid": {"nodes": 40, "spacing": "0.25 um"},
+    "grid": {"nodes": 32, "spacing": "0.3 um"},
     "impact": {"velocity": ["0.1 m/s", "0.2 m/s"]},
     "impacts": {"coverage": [1, 2], "places": 3},
 }
@@ -68,8 +71,8 @@ def test_the_final_surface_is_a_scan_for_another_case(folder):
     sequence = open_results(folder).summary["run_in"]["sequences"][1]
     first = sequence["surfaces"]["first"]
     surface = read_surface(folder / first["file"])
-    assert surface.grid.nodes == (40, 40)
-    assert surface.grid.spacing[0] == approx(0.25e-6)
+    assert surface.grid.nodes == (32, 32)
+    assert surface.grid.spacing[0] == approx(0.3e-6)
     assert surface.height.std() == approx(first["Sq_m"], rel=1e-3)
     scan = {"kind": "measured", "file": str(folder / first["file"])}
     again = run(
@@ -78,8 +81,8 @@ def test_the_final_surface_is_a_scan_for_another_case(folder):
     assert again.run_in[-1].impacts == 2
 
 
-def test_a_law_at_a_coverage_has_its_distribution(folder, tmp_path):
-    law = law_of(folder)
+def test_a_law_at_a_coverage_has_its_distribution(folder):
+    law = bare_law(folder)
     points = open_results(folder).run_in
     worn = at_coverage(law, points[1].coverage)
     assert worn.points[0].restitution == approx(points[1].restitution)
@@ -89,18 +92,15 @@ def test_a_law_at_a_coverage_has_its_distribution(folder, tmp_path):
     assert new.points[1].restitution == approx(points[3].restitution)
     between = at_coverage(law, 0.5 * points[1].coverage).points[0].restitution
     assert between == approx(0.5 * (points[0].restitution + points[1].restitution))
-    export(law, to="csv", out=tmp_path / "csv", coverage=1)
-    with open(tmp_path / "csv" / "restitution.csv") as file:
-        (row, _) = csv.DictReader(file)
-    assert float(row["restitution_std"]) > 0
-    export(law, to="yade", out=tmp_path / "yade", coverage=1, velocity=0.15)
-    text = (tmp_path / "yade" / "restitution_yade.py").read_text()
-    assert f"({points[0].velocity:.9g}, {at_coverage(law, 1).points[0].deviation:.6f})" in text
-    assert "covered 1 times" in (tmp_path / "yade" / "restitution_yade.txt").read_text()
+    (row, _) = csv.DictReader(io.StringIO(export([worn], "csv", None)["restitution.csv"]))
+    assert float(row["restitution_std"]) == approx(points[1].restitution_std)
+    texts = export([worn], "yade", 0.15)
+    assert f", {points[1].restitution_std:.6f})" in texts["restitution_yade.py"]
+    assert "that earlier impacts have covered" in texts["restitution_yade.txt"]
 
 
 def test_laws_refuse_coverages_beyond_the_computed_ones(folder):
-    law = law_of(folder)
+    law = bare_law(folder)
     with pytest.raises(RestitutionError, match="beyond the computed coverages"):
         at_coverage(law, 4)
     with pytest.raises(RestitutionError, match="one coverage only"):
@@ -177,7 +177,7 @@ def test_a_steady_state_is_told_from_a_trend():
         ({"impacts": {"count": 3, "place": "track"}}, 'impacts.place: "track" needs a wall'),
         ({"roughness": {**CASE["roughness"], "realisations": 3}}, "roughness.realisations"),
         ({"grid": {**CASE["grid"], "refine": "auto"}}, "grid.refine: must be one number"),
-        ({"grid": {**CASE["grid"], "nodes": 10}}, "grid.nodes: the grid of 2.5 µm is too small"),
+        ({"grid": {**CASE["grid"], "nodes": 10}}, "grid.nodes: the grid of 3 µm is too small"),
         (
             {"interface": {**CASE["interface"], "plasticity": "truncated"}},
             'interface.plasticity: "truncated" defines a single impact',
@@ -202,6 +202,6 @@ def test_impacts_need_the_table_impact():
 
 def test_a_scan_whose_edges_do_not_match_is_refused(tmp_path):
     np.save(tmp_path / "scan.npy", np.add.outer(np.linspace(0, 1e-7, 48), np.zeros(48)))
-    scan = {"kind": "measured", "file": str(tmp_path / "scan.npy"), "size": "9.6 um"}
+    scan = {"kind": "measured", "file": str(tmp_path / "scan.npy"), "size": "9.7 um"}
     with pytest.raises(RestitutionError, match=r'set roughness\.extend = "twin"'):
         run(case(roughness=scan))

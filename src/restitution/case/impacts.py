@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
@@ -54,7 +54,7 @@ class ImpactsTable(Table):
             default="each velocity of `[impact]` has surfaces of its own",
         )
     )
-    weights: list[Any] | None = key(
+    weights: list[float] | None = key(
         None,
         "a weight for each `velocity`: the impacts then have random velocities of this "
         "distribution",
@@ -82,7 +82,7 @@ class ImpactsTable(Table):
             raise ValueError("weights: is a distribution already; remove weights or distribution")
         return self
 
-    def _check_weights(self, weights: list[Any]) -> None:
+    def _check_weights(self, weights: list[float]) -> None:
         if self.velocity is None or len(self.velocity) != len(weights):
             count = 0 if self.velocity is None else len(self.velocity)
             raise ValueError(
@@ -90,9 +90,9 @@ class ImpactsTable(Table):
                 "velocity of [impacts]"
             )
         for value in weights:
-            if isinstance(value, bool) or not isinstance(value, (int, float)) or not value >= 0:
+            if not value >= 0:
                 raise ValueError(
-                    f"weights: {value} is not 0 or a positive number; a distribution of "
+                    f"weights: {value:g} is not 0 or a positive number; a distribution of "
                     "velocities is never negative"
                 )
         if not sum(weights) > 0:

@@ -126,8 +126,17 @@ def _bodies(case: Case, folder: Path) -> tuple[Surface, Surface]:
             for part in (case.roughness[:1], case.roughness[1:])
         )
         return first, rest
-    other = case.variant(_OTHER_SURFACE).surface(folder)
+    other = _variant(case, _OTHER_SURFACE).surface(folder)
     return _scaled(whole), _scaled(other)
+
+
+def _variant(case: Case, number: int) -> Case:
+    """The case with other random surfaces; mirror images of a scan do not repeat."""
+    parts = tuple(
+        part.variant(number) if getattr(part, "seed", None) is not None else part
+        for part in case.roughness
+    )
+    return case.model_copy(update={"roughness": parts})
 
 
 def _scaled(surface: Surface) -> Surface:
@@ -203,7 +212,7 @@ def _with_errors(
     same = coarse(bodies, table.seed, "error: cells twice as large")
     others = [
         coarse(
-            _bodies(case.variant(k), folder),
+            _bodies(_variant(case, k), folder),
             table.seed + _OTHER_SEED * k,
             f"error: surface {k} of {OTHERS}",
         )
