@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.tolerance import approx
 
 from restitution import (
     Body,
@@ -27,6 +26,7 @@ from restitution import (
     solve_at_velocity,
 )
 from restitution.repeated.run_in import nominal_area
+from tolerance import approx
 
 GRID = Grid((64, 64), (0.2e-6, 0.2e-6))
 BALL = Body(50e-6, 210e9, 0.3, 7850)

@@ -5,7 +5,6 @@ import io
 
 import numpy as np
 import pytest
-from tests.tolerance import approx
 
 from restitution import RestitutionError, open_results, read_surface, run
 from restitution.case.case_file import parse_case
@@ -14,6 +13,7 @@ from restitution.laws.coverage import at_coverage, coverage_of
 from restitution.laws.from_results import bare_law
 from restitution.repeated.points import RepeatedImpact, SteadyState
 from restitution.repeated.velocities import drawn, in_turn, rayleigh
+from tolerance import approx
 
 pytestmark = pytest.mark.filterwarnings("ignore::UserWarning")  # of a coarse grid
 
