@@ -287,8 +287,8 @@ def _steady(summary: dict[str, Any]) -> Iterator[str]:
             )
         else:
             yield (
-                f"COR still changes {where} at {state['velocity']:.3g} m/s: "
-                f"{state['trend']:+.2g} per coverage"
+                f"COR may still change {where} at {state['velocity']:.3g} m/s: by "
+                f"{state['trend']:+.2g} ± {state['trend_error']:.2g} per coverage"
             )
 
 

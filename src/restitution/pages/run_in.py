@@ -71,9 +71,13 @@ def run_in_parts(
     )
 
 
+def _trend(state: Mapping[str, Any]) -> str:
+    return f"{state['trend']:+.2g} ± {state['trend_error']:.2g} per coverage"
+
+
 def _steady(entry: Mapping[str, Any]) -> tuple[str, str]:
     state = entry["steady_state"]
     if state is None:
         return "–", "too few impacts"
-    words = "yes" if state["steady"] else f"no ({state['trend']:+.2g} per coverage)"
+    words = "yes" if state["steady"] else f"no ({_trend(state)})"
     return f"{state['restitution']:.3f} ± {state['error']:.2g}", words

@@ -14,7 +14,7 @@ from restitution.contact.state import State
 from restitution.curve.columns import Record, array, column, magnitude
 
 FEWEST = 40  # smallest number of impacts for a statement on the steady state
-STEADY = 0.015  # largest change of COR between the last two quarters of a steady sequence
+STEADY = 0.02  # largest change of COR per coverage in a steady sequence
 _BLOCKS = 8
 CONFIDENCE = 0.95  # level of the interval of a mean
 
@@ -146,8 +146,8 @@ class SteadyState:
     """Whether COR of a sequence of impacts has become steady, and its value.
 
     `restitution` and `error` (95 %) are those of the last half of the sequence, and `trend` is the
-    change of COR per coverage within it. The sequence is `steady` if COR of the last two quarters
-    agrees within the error of their difference, and by `STEADY`.
+    slope of COR against coverage in it, with its error. A sequence is `steady` if the trend is
+    surely smaller than `STEADY`.
     """
 
     velocity: float
@@ -156,6 +156,7 @@ class SteadyState:
     restitution: float
     error: float
     trend: float
+    trend_error: float
     steady: bool
 
     @classmethod
@@ -164,24 +165,27 @@ class SteadyState:
         if len(impacts) < FEWEST:
             return None
         last = impacts[len(impacts) // 2 :]
-        e = array(last, "restitution")
-        # Impacts that follow each other see parts of one surface, so means of blocks are compared.
-        blocks = np.array([part.mean() for part in np.array_split(e, _BLOCKS)])
-        half = _BLOCKS // 2
-        error = half_interval(_BLOCKS) * float(blocks.std(ddof=1))
-        change = float(blocks[half:].mean() - blocks[:half].mean())
-        width = half_interval(half) * math.hypot(
-            *(float(part.std(ddof=1)) for part in (blocks[:half], blocks[half:]))
+        e, coverage = array(last, "restitution"), array(last, "coverage")
+        # Impacts that follow each other see parts of one surface, so blocks of them are compared.
+        blocks, at = (
+            np.array([part.mean() for part in np.array_split(values, _BLOCKS)])
+            for values in (e, coverage)
         )
-        covered = last[-1].coverage - last[0].coverage
+        away = at - at.mean()
+        trend = float(away @ blocks / (away @ away))
+        rest = blocks - blocks.mean() - trend * away
+        # Two parameters are fitted, so that two blocks count less.
+        slope_error = float(np.sqrt(rest @ rest / (_BLOCKS - 2) / (away @ away)))
+        trend_error = half_interval(_BLOCKS - 1) * math.sqrt(_BLOCKS - 1) * slope_error
         return cls(
             velocity=impacts[-1].velocity,
             impacts=len(impacts),
             coverage=impacts[-1].coverage,
             restitution=float(e.mean()),
-            error=error,
-            trend=change / (0.5 * covered) if covered > 0 else math.nan,
-            steady=abs(change) <= min(width, STEADY),
+            error=half_interval(_BLOCKS) * float(blocks.std(ddof=1)),
+            trend=trend,
+            trend_error=trend_error,
+            steady=abs(trend) + trend_error <= STEADY,
         )
 
 
