@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from restitution import run
-from restitution.plots.cor import cor_chart
-from restitution.plots.figure import GREY, PALETTE, Axis, Band, Figure, Line, Points
+from restitution.plots.cor import cor_axis
+from restitution.plots.figure import GREY, PALETTE, Axis, Band, Chart, Figure, Line, Points
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from shared import write_image, write_table
@@ -67,23 +67,30 @@ def main() -> None:
             )
             print(rows[-1], flush=True)
         write_table("run_in/figure_10.csv", rows)
+    draw(rows)
+
+
+def draw(rows: list[dict]) -> None:
     panels = []
     for coverage, title in ((0, "first impact"), (COVERAGE, f"after coverage {COVERAGE}")):
-        series = [Line(*smooth, "smooth", color=GREY)]
+        V, e, *_ = columns(rows, 0, 0)
+        series = [Line(V, e, "smooth", color=GREY)]
         for rms, color in zip(ROUGH, PALETTE, strict=False):
-            of = [r for r in rows if r["rms_um"] == rms and r["coverage"] == coverage]
-            V, e, low, high = (
-                np.array([r[key] for r in of])
-                for key in ("velocity_m_per_s", "restitution", "restitution_5", "restitution_95")
-            )
+            V, e, low, high = columns(rows, rms, coverage)
             series += [
                 Band(V, low, high, color=color),
                 Points(V, e, f"Rq {rms} µm", color=color, joined=True),
             ]
         axis = Axis("impact velocity", "m/s", "log", 0.9 * SPEEDS[0], 1.1 * SPEEDS[-1])
-        chart = cor_chart(axis, series, title)
-        panels.append(chart)
-    write_image("run-in", Figure("", panels))
+        panels.append((axis, series, title))
+    both = cor_axis([part for _, series, _ in panels for part in series])
+    write_image("run-in", Figure("", [Chart(x, both, series, t) for x, series, t in panels]))
+
+
+def columns(rows: list[dict], rms: float, coverage: float) -> list[np.ndarray]:
+    of = [r for r in rows if float(r["rms_um"]) == rms and float(r["coverage"]) == coverage]
+    names = ("velocity_m_per_s", "restitution", "restitution_5", "restitution_95")
+    return [np.array([float(row[name]) for row in of]) for name in names]
 
 
 if __name__ == "__main__":
