@@ -124,7 +124,7 @@ class RunIn:
 
     @property
     def coverage(self) -> float:
-        """Area of the contacts of smooth bodies so far, divided by the area of the surface."""
+        """Contact area of smooth bodies so far over the area of the surface (dimensionless)."""
         return self._coverage
 
     @property
@@ -141,7 +141,14 @@ class RunIn:
         return first, second
 
     def coverage_of(self, velocity: float) -> float:
-        """Coverage of one impact at `velocity` (m/s)."""
+        """Coverage of one impact.
+
+        Args:
+            velocity: Impact velocity (m/s).
+
+        Returns:
+            Contact area of smooth bodies over the area of the surface (dimensionless).
+        """
         contact = self._contact
         area = nominal_area(contact.pair, contact.hardness, velocity)
         return area / math.prod(contact.grid.size)
@@ -171,6 +178,13 @@ class RunIn:
             velocity: Impact velocity (m/s).
             first: Node of the first body at which it is hit.
             second: Node of the second body at which it is hit.
+
+        Returns:
+            The impact.
+
+        Raises:
+            DomainError: The contact is larger than the surface.
+            NotConvergedError: A solve did not converge.
         """
         state, collision, end = self._collide(velocity, (first, second))
         self._wear((first, second), end)
@@ -185,6 +199,13 @@ class RunIn:
             velocity: Impact velocity (m/s).
             places: Number of impacts.
             seed: Seed of the places.
+
+        Yields:
+            Each impact.
+
+        Raises:
+            DomainError: A contact is larger than the surface.
+            NotConvergedError: A solve did not converge.
         """
         random = np.random.default_rng(seed)
         for _ in range(places):
