@@ -250,8 +250,8 @@ def export(
             "csv" to write a table.
         out: Folder for the files; existing files are never overwritten.
         velocity: Impact velocity, such as "1 m/s", or a number (m/s). It is optional for "csv".
-        coverage: How many times earlier impacts have covered the surfaces; None for the first
-            impact. The cases need the table [impacts].
+        coverage: How many times earlier impacts have covered the surfaces (dimensionless); None for
+            the first impact. The cases need the table [impacts].
 
     Returns:
         The files that were written.

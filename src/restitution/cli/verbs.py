@@ -366,8 +366,8 @@ def export(
         str | None,
         option(
             "COVERAGE",
-            "How many times earlier impacts have covered the surfaces, such as 3; the runs need "
-            "the table [impacts].",
+            "How many times earlier impacts have covered the surfaces, such as 3, for laws of runs "
+            "with many impacts.",
             show_default="the first impact",
         ),
     ] = None,
