@@ -23,7 +23,7 @@ from restitution.contact.contact import Contact
 from restitution.contact.models import COMPANION
 from restitution.contact.path import unloading_path
 from restitution.contact.plasticity.cavity import ExpandingCavity
-from restitution.contact.plasticity.remembered import AGAIN, RememberedCavity
+from restitution.contact.plasticity.remembered import RememberedCavity
 from restitution.contact.prescribed.velocity import solve_at_velocity
 from restitution.contact.state import State
 from restitution.errors import CaseError, DomainError
@@ -283,13 +283,13 @@ class RunIn:
             for body, centre in zip(self._bodies, at, strict=True)
             if body.yields
         ]
-        soft = [AGAIN * body.borne[part] <= bound for body, part in worn]
+        soft = [body.borne[part] <= bound for body, part in worn]
         share = given / np.sum(soft, axis=0)
         for (body, part), softer in zip(worn, soft, strict=True):
             body.height[part] -= np.where(softer, share, 0.0)
             if body.remembers:
                 old = body.borne[part]
-                higher = softer & (given > 0) & (bound > AGAIN * old)
+                higher = softer & (given > 0) & (bound > old)
                 body.borne[part] = np.where(higher, bound, old)
 
 

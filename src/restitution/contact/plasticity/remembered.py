@@ -12,17 +12,15 @@ from restitution.contact.plasticity.cavity import ExpandingCavity
 from restitution.contact.state import Array, State
 from restitution.numerics.read_only import freeze
 
-# A node that has yielded yields again at this multiple of the bound at which it did, because the
-# residual stress of the first flow opposes the second (evidence/run_in: J2 in 3D).
-AGAIN = 1.2
-
 
 @dataclass(frozen=True)
 class RememberedCavity(ExpandingCavity):
-    """`ExpandingCavity` whose bound is at least 1.2 times that at which a node has yielded before.
+    """`ExpandingCavity` whose bound is at least that at which a node has yielded before.
+
+    So do repeated impacts with J2 plasticity in 3D (evidence/run_in/against_j2.csv).
 
     Attributes:
-        borne: Bound (Pa) at which each node first yielded, 0 without, shape `grid.nodes`.
+        borne: Largest bound (Pa) at which each node has yielded, 0 without, shape `grid.nodes`.
     """
 
     borne: Array | float = field(default=0.0, compare=False)
@@ -31,11 +29,11 @@ class RememberedCavity(ExpandingCavity):
         self, contact: Contact, indentation: float, residual: float
     ) -> tuple[Array | float, int]:
         limit, convolutions = super().bound(contact, indentation, residual)
-        return freeze(np.maximum(limit, AGAIN * self.borne)), convolutions
+        return freeze(np.maximum(limit, self.borne)), convolutions
 
     def work(self, before: State | None, after: State) -> tuple[float, float]:
         contact = after.contact
         if before is None:
-            bound = freeze(np.maximum(AGAIN * self.borne, contact.first_yield_pressure))
+            bound = freeze(np.maximum(self.borne, contact.first_yield_pressure))
             before = replace(separated_state(contact, 0.0), bound=bound)
         return super().work(before, after)
