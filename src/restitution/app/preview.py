@@ -48,7 +48,16 @@ class Ladder:
     """
 
     def __init__(self, case: Case, contact: Contact) -> None:
+        if contact.adhesion is not None:
+            # The relative error of COR is half that of the work.
+            rough = contact.adhesion.with_work_tolerance(2 * _ERROR)
+            contact = replace(contact, adhesion=rough)
+        # The contact on cells that are larger by the factors 1, 2, 4, …
         self.case, self._contacts = case, [contact]
+        deep = {depth: indentation_at(case, depth) for depth in case.depths()}
+        cell, pair, limit = max(contact.grid.spacing), contact.pair, contact.hardness
+        # The nodes in the predicted radius of the contact at each depth.
+        self._nodes = {depth: predicted_radius(pair, deep[depth], limit) / cell for depth in deep}
         count, factor = len(case.depths()), 1
         levels = [self._level(count, factor)]
         while True:
@@ -95,19 +104,12 @@ class Ladder:
                 yield Load(contact, partial(load_to, self.case, contact, to), depth, 1, touch)
 
     def _level(self, count: int, largest: int) -> Level:
-        depths = self.case.depths()
+        depths = list(self._nodes)
         numbers = np.unique(np.linspace(0, len(depths) - 1, count).round().astype(int))
         chosen = tuple(depths[number] for number in numbers)
-        nodes = NODES_PER_RADIUS if count > _FEWEST_DEPTHS else _FEWEST_PER_RADIUS
-        return Level(chosen, tuple(self._factor(depth, nodes, largest) for depth in chosen))
-
-    def _factor(self, depth: float, nodes: int, largest: int) -> int:
-        """The largest factor that leaves `nodes` in the radius of the contact at `depth`."""
-        contact = self._contacts[0]
-        indentation = indentation_at(self.case, depth)
-        radius = predicted_radius(contact.pair, indentation, contact.hardness)
-        cells = radius / (nodes * max(contact.grid.spacing))
-        return int(min(largest, 2 ** max(0, math.floor(math.log2(cells)))))
+        left = NODES_PER_RADIUS if count > _FEWEST_DEPTHS else _FEWEST_PER_RADIUS
+        ratios = (max(1.0, self._nodes[depth] / left) for depth in chosen)
+        return Level(chosen, tuple(min(largest, 2 ** int(math.log2(ratio))) for ratio in ratios))
 
     def _coarser(self, factor: int) -> Contact:
         """The contact on cells `factor` times as large, a power of two."""
@@ -117,11 +119,7 @@ class Ladder:
             surface = coarsen(last.surface)
             surface = replace(surface, provenance={**surface.provenance, COMPANION: True})
             self._contacts.append(replace(last, surface=surface))
-        contact = self._contacts[factor.bit_length() - 1]
-        if contact.adhesion is None:
-            return contact
-        # The relative error of COR is half that of the work.
-        return replace(contact, adhesion=contact.adhesion.with_work_tolerance(2 * _ERROR))
+        return self._contacts[factor.bit_length() - 1]
 
 
 class Pace:
