@@ -36,7 +36,7 @@ def adhesive(page):
 
 
 def previews(lines):
-    return [line for line in lines if line.get("preview")][:1]
+    return [line for line in lines if line.get("preview") and not line["progress"]][:1]
 
 
 def legend(page):

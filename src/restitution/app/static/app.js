@@ -472,12 +472,26 @@ function draw(id, spec, traces = [], shapes = []) {
   if (!spec) { Plotly.purge($(id)); $(id).dataset.drawn = ""; return; }
   const layout = themed(structuredClone(spec.layout));
   layout.shapes = [...(layout.shapes || []), ...shapes];
+  for (const name of ["x", "y"]) widen(layout[`${name}axis`], traces.flatMap((trace) => (trace.meta === "wide" ? trace[name] : [])));
   if (innerWidth < 600 || $(id).clientHeight < 300) { // the legend would leave no room for the plot
     layout.showlegend = false;
     layout.margin = { l: 55, r: 10, t: 15, b: 45 };
   }
   $(id).dataset.drawn = "yes";
   return Plotly.react($(id), [...spec.data, ...traces], layout, { responsive: true, displaylogo: false, showSendToCloud: false });
+}
+
+// Let an axis with fixed ends include `values`.
+function widen(axis, values) {
+  const at = axis && axis.type === "log" ? values.filter((value) => value > 0).map(Math.log10) : values.filter(Number.isFinite);
+  if (!axis || !at.length) return;
+  const allowed = axis.autorangeoptions || {};
+  const [first, last] = axis.range || [allowed.minallowed, allowed.maxallowed];
+  const margin = 0.03 * (Math.max(...at, last ?? -Infinity) - Math.min(...at, first ?? Infinity));
+  const low = first > Math.min(...at) ? Math.min(...at) - margin : first;
+  const high = last < Math.max(...at) ? Math.max(...at) + margin : last;
+  if (axis.range) axis.range = [low, high];
+  else if (axis.autorangeoptions) axis.autorangeoptions = { minallowed: low, maxallowed: high };
 }
 
 const depthNow = () => Math.min(cursor === null ? Infinity : cursor, curve.rows.length - 1);
@@ -529,7 +543,7 @@ function modelBand(key, scale) {
 function pinTrace(pin, key, scale, quantity) {
   const rows = pin.rows.filter((row) => row[key] > 0);
   return {
-    type: "scatter", mode: "lines", name: pin.name, x: rows.map((row) => scale * row[key]), y: rows.map((row) => row[quantity]),
+    type: "scatter", mode: "lines", name: pin.name, meta: "wide", x: rows.map((row) => scale * row[key]), y: rows.map((row) => row[quantity]),
     line: { color: pin.colour, dash: pin.dash, width: 2 }, hovertemplate: `%{x:.4g}<br>%{y:.4g}<extra>${pin.name}</extra>`,
   };
 }
