@@ -116,9 +116,9 @@ slider of Rq moved {changes} times. The time is measured from the move until the
 the first new curve of COR: the curve of the case, or a preview with fewer depths and larger cells.
 Without adhesion, each move follows when the curve of the case has been drawn; with adhesion, one
 second after the preview, so that it cancels the refinement. The table shows the median of the times
-in ms (largest time in brackets), the parts of this time, and the time of the whole curve.
+(largest time in brackets), the parts of this time, and the time of the whole curve.
 
-| case | first curve | solve | server and transfer | drawing | whole curve |
+| case | first curve, ms | solve, ms | server and transfer, ms | drawing, ms | whole curve, s |
 |---|---|---|---|---|---|
 {rows}
 
@@ -152,9 +152,9 @@ def row(name: str, moved: list[dict[str, Any]], whole: list[float]) -> str:
         [t["solve"] for t in moved],
         [t["received"] - t["asked"] - t["solve"] for t in moved],
         [t["painted"] - t["received"] for t in moved],
-        whole,
     )
-    cells = (f"{statistics.median(part):.0f} ({max(part):.0f})" for part in parts)
+    cells = [f"{statistics.median(part):.0f} ({max(part):.0f})" for part in parts]
+    cells.append(f"{statistics.median(whole) / 1000:.2f} ({max(whole) / 1000:.2f})")
     return f"| {name} | {' | '.join(cells)} |"
 
 

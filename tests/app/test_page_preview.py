@@ -60,7 +60,9 @@ def test_the_preview_remains_below_a_curve_that_is_not_complete(adhesive):
         return [*previews(lines), last]
 
     page = adhesive(begin_of_the_curve)
-    expect(page.locator("#status")).to_have_text(re.compile("^2 of 6 depths; the rest: preview: 3"))
+    expect(page.locator("#status")).to_have_text(
+        re.compile("^2 of 6 depths; the rest is a preview: 3")
+    )
     expect(legend(page).filter(has_text=PREVIEW)).to_have_count(1)
     expect(legend(page).filter(has_text="this contact")).to_have_count(1)
     expect(page.locator("#cursor-text")).not_to_contain_text("preview")

@@ -114,8 +114,9 @@ def test_previews_come_nearer_to_the_curve(tmp_path, text):
     assert errors[-1] < 0.03
 
 
-def test_the_curve_after_previews_is_that_of_the_case(tmp_path):
+def test_the_curve_after_previews_is_that_of_the_case(tmp_path, monkeypatch):
     """Their tolerances are not used for it."""
+    monkeypatch.setattr("restitution.app.preview._SOON", 0.0)
     text = JKR.replace(', "80 nm", "100 nm"', "")
     *previews, last = lines(text, tmp_path, LiveCurves())
     assert previews[0]["preview"]
@@ -141,16 +142,26 @@ def test_a_preview_that_fails_is_left_out(tmp_path, monkeypatch):
     text = DRY.replace('to = "1 um"', 'to = "3 um"')
     *previews, last = lines(text, tmp_path, LiveCurves())
     assert "reaches the edge" in last["failure"]
-    assert [line["failure"] for line in previews if line.get("preview")]
-    assert not any(line["failure"] for line in previews if line.get("preview"))
+    drawn = [line for line in previews if line.get("preview")]
+    assert drawn
+    assert not any(line["failure"] for line in drawn)
 
 
-def test_a_refined_grid_is_chosen_after_the_previews(tmp_path):
-    text = DRY.replace("nodes = 256", 'refine = "auto"\nnodes = 64').replace("2 nm", "30 nm")
-    text = text.replace('spacing = "0.25 um"', 'spacing = "1 um"')
+@pytest.mark.parametrize("text", [DRY, COHESIVE], ids=["dry", "cohesive"])
+def test_a_refined_grid_is_chosen_after_the_previews(tmp_path, monkeypatch, text):
+    monkeypatch.setattr("restitution.app.preview._SOON", 0.0)
+    for old, new in (
+        ("nodes = 256", 'refine = "auto"\nnodes = 64'),
+        ('nodes = 64\nspacing = "8 nm"', 'refine = "auto"\nnodes = 32\nspacing = "16 nm"'),
+        ("2 nm", "30 nm" if text == DRY else "2 nm"),
+        ('spacing = "0.25 um"', 'spacing = "1 um"'),
+        ('adhesion = "cohesive"', ""),
+    ):
+        text = text.replace(old, new)
     answer = lines(text, tmp_path, LiveCurves())
-    assert answer[0]["preview"]
-    assert {row["refine"] for row in answer[-1]["curve"]} > {1}
+    first = next(line for line in answer if line.get("preview") and not line["progress"])
+    assert len(first["curve"]) == 3
+    assert max(row["refine"] for row in answer[-1]["curve"]) > 1
 
 
 class Clock:

@@ -50,15 +50,18 @@ class LiveCurves:
         """
         case = parse_case(text).realisation(0)
         case.require_impact()
+        # With "auto", the grids are chosen after the previews, which takes solves.
         curve = self._curve(least_refined(case, folder), folder)
         yield from curve.previews(self._pace, check)
+        ladder, began = curve.ladder, time.perf_counter()
         if case.grid.refine == "auto":
             curve = self._curve(with_chosen_grids(case, folder), folder)
         self._curves.pop(tab, None)
         self._curves[tab] = curve
         if len(self._curves) > _TABS:
             del self._curves[next(iter(self._curves))]
-        yield from curve.compute(self._pace, folder, check)
+        yield from curve.compute(folder, check)
+        self._pace.note(ladder, len(ladder.levels) - 1, time.perf_counter() - began)
 
     def maps(self, tab: str, depth: int) -> Iterator[str]:
         """Yield the contact maps at depth number `depth` of the last curve of `tab`."""
@@ -141,7 +144,7 @@ class _Curve:
         except RestitutionError:  # the curve of the case reports it, or does without it
             return
 
-    def compute(self, pace: Pace, folder: Path, check: Callable[[], None]) -> Iterator[str]:
+    def compute(self, folder: Path, check: Callable[[], None]) -> Iterator[str]:
         """Yield the curve of the case, first its shallow part if it takes long."""
         began = drawn = time.perf_counter()
         count, failed = len(self.case.depths()), 0
@@ -163,9 +166,7 @@ class _Curve:
                 drawn = time.perf_counter()
         if self.failure is not None and not self.points:
             raise self.failure
-        seconds = time.perf_counter() - began
-        pace.note(self.ladder, len(self.ladder.levels) - 1, seconds)
-        yield self.line(self.points, "", seconds=seconds)
+        yield self.line(self.points, "", seconds=time.perf_counter() - began)
 
     def line(self, points: list[Point], progress: str, **more: Any) -> str:
         results = live_dataset(self.case, self.contact, points)

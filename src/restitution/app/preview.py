@@ -52,6 +52,9 @@ class Ladder:
             # The relative error of COR is half that of the work.
             rough = contact.adhesion.with_work_tolerance(2 * _ERROR)
             contact = replace(contact, adhesion=rough)
+        # A contact whose cells are too large for its adhesion is refused without this key.
+        provenance = {**contact.surface.provenance, COMPANION: True}
+        contact = replace(contact, surface=replace(contact.surface, provenance=provenance))
         # The contact on cells that are larger by the factors 1, 2, 4, …
         self.case, self._contacts = case, [contact]
         deep = {depth: indentation_at(case, depth) for depth in case.depths()}
@@ -115,10 +118,7 @@ class Ladder:
         """The contact on cells `factor` times as large, a power of two."""
         while 2 ** (len(self._contacts) - 1) < factor:
             last = self._contacts[-1]
-            # A contact whose cells are too large for its adhesion is refused without the key.
-            surface = coarsen(last.surface)
-            surface = replace(surface, provenance={**surface.provenance, COMPANION: True})
-            self._contacts.append(replace(last, surface=surface))
+            self._contacts.append(replace(last, surface=coarsen(last.surface)))
         return self._contacts[factor.bit_length() - 1]
 
 

@@ -405,7 +405,7 @@ function takeCurve(line, sent, request) {
   drawCurves();
   drawNumbers();
   if (curve.preview) say(`${previewOf(curve)}${line.progress ? ` (${line.progress})` : ""}; refining…`, request);
-  else if (line.progress) say(`${line.progress}${under ? `; the rest: ${previewOf(under)}` : ""}`, request);
+  else if (line.progress) say(`${line.progress}${under ? `; the rest is a ${previewOf(under)}` : ""}`, request);
   else say(`${line.curve.length} depths in ${line.seconds.toFixed(2)} s`);
 }
 
