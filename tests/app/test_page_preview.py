@@ -97,6 +97,7 @@ def test_a_change_replaces_a_preview_and_its_refinement(adhesive):
 
 def test_the_page_says_how_long_it_has_been_computing(adhesive):
     page = adhesive(previews)
+    expect(page.locator("#status")).to_have_text(PREVIEW)
     expect(page.locator("#elapsed")).to_have_text(re.compile(r"^\d+ s$"))
     page.unroute("**/api/curve")
     page.locator(ADHESION).fill("")
