@@ -179,6 +179,10 @@ class Adhesion(ABC):
         """Copy with another work of adhesion (J/m²)."""
         return replace(self, work_of_adhesion=work_of_adhesion)  # type: ignore[type-var]
 
+    def with_work_tolerance(self, tolerance: float) -> Adhesion:
+        """Copy whose loading work may have this relative error, if the model has a choice."""
+        return self
+
     def length(self, pair: Pair) -> float:
         """Length scale of adhesion (w²R*/E*²)^⅓ (m); 0 between flat bodies."""
         if pair.flat:
