@@ -14,7 +14,7 @@ and the paraboloid outside the grid, attract but are rigid.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
@@ -54,6 +54,7 @@ class CohesiveState(State):
         unaccounted: Work of the force minus the change of energy (J), summed over all steps without
             a jump so far. It differs from zero only by the error of integration.
         smallest_gap: Smallest gap between the surfaces (m).
+        before: The state before on the same branch of equilibria; None at its beginning.
     """
 
     interaction_energy: float = 0.0
@@ -61,6 +62,7 @@ class CohesiveState(State):
     jumps: int = 0
     unaccounted: float = 0.0
     smallest_gap: float = math.inf
+    before: CohesiveState | None = field(default=None, repr=False)
 
     @property
     def force(self) -> float:
@@ -263,6 +265,7 @@ def on_box(state: CohesiveState, box: Box, *, residual: float) -> CohesiveState:
             adhesive_loss=state.adhesive_loss,
             jumps=state.jumps,
             unaccounted=state.unaccounted,
+            before=state.before,
         )
     )
 

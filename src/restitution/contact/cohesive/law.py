@@ -45,7 +45,7 @@ COARSEST = 0.3
 # most 1.5 % (docs/adhesion.md).
 _COARSEST_ON_ASPERITIES = 0.5
 # Tolerance of the energy balance of a step of unloading, as a fraction of the tolerance of COR.
-_UNACCOUNTED = 0.1
+_UNACCOUNTED = 0.25
 # Relative error of the adhesive loss on the coarsest grid that is allowed (docs/adhesion.md).
 _GRID_LOSS = 0.05
 # Relative error of the pull-off force if the grid resolves the range of the attraction.
@@ -147,9 +147,13 @@ class CohesiveLaw(Adhesion):
         return move(cast(CohesiveState, state), indentation, residual)
 
     def enclose(
-        self, contact: Contact, reached: Callable[[State], bool], start: State | None
+        self,
+        contact: Contact,
+        reached: Callable[[State], bool],
+        ahead: Callable[[State, float], float],
+        start: State | None,
     ) -> tuple[State, State] | None:
-        return load_until(contact, reached, start=start, residual=RESIDUAL)
+        return load_until(contact, reached, ahead, start=start, residual=RESIDUAL)
 
     def unload(
         self, state: State, *, steps: int, tolerance: float, residual: float, known: Sequence[State]
