@@ -26,7 +26,7 @@ from restitution.contact.cohesive.equilibrium import (
     with_interaction,
 )
 from restitution.contact.contact import Contact
-from restitution.contact.models import WORK_RESIDUAL, Separation
+from restitution.contact.models import Separation
 from restitution.contact.state import State
 from restitution.errors import NotConvergedError
 from restitution.numerics.box import reframe, shape_of, union
@@ -40,7 +40,8 @@ ACCURACY = 5e-4
 # difference must not exceed _CORRECTION times the error that is allowed for the step. If the
 # difference is larger, the force may have jumped, and the parabola may be right only by chance.
 _CORRECTION = 10.0
-_RESIDUAL = 1e-8  # of unloading
+# Tolerances of the solves of unloading, and of the solves between the given depths.
+_RESIDUAL, _BETWEEN = 1e-8, 3e-5
 _FIRST_STEP = 0.25  # length of the first step, in units of the equilibrium separation z₀
 
 # Longest step under tension, as a fraction of the sum of z₀ and the adhesive length, while the gap is
@@ -64,6 +65,8 @@ _MEETINGS, _SAME = 4, 1e-3
 # When the box (the part of the grid that is solved) must grow, it is made large enough for about
 # this multiple of the next indentation. So it seldom grows.
 _WIDER = 2.0
+# In unloading it shrinks where this share of its nodes suffices.
+_NARROWER = 0.4
 
 
 def load_cohesive(
@@ -74,17 +77,14 @@ def load_cohesive(
     residual: float,
     accuracy: float = ACCURACY,
 ) -> CohesiveState:
-    """Load the undeformed bodies to `indentation` from far apart, or from a shallower `start`.
+    """Load the undeformed bodies to `indentation` from far apart, or from the path to `start`.
 
     Raises `CaseError` if the grid is too coarse, and `NotConvergedError`.
     """
     law_of(contact).require_fine_grid(contact)
-    if (
-        isinstance(start, CohesiveState)
-        and start.is_first_loading
-        and start.indentation <= indentation
-    ):
-        return move(start, indentation, residual, accuracy)
+    begin = _on_the_way(start, lambda state: state.indentation > indentation)
+    if begin is not None:
+        return move(begin, indentation, residual, accuracy)
     limit, convolutions = contact.plasticity.bound(contact, -math.inf, residual)
     begin = rigid_start(contact, limit=limit, residual=residual)
     convolutions += begin.convolutions
@@ -92,6 +92,18 @@ def load_cohesive(
         return replace(begin, convolutions=convolutions)
     end = move(begin, indentation, residual, accuracy)
     return replace(end, convolutions=convolutions + end.convolutions)
+
+
+def _on_the_way(
+    start: State | None, beyond: Callable[[CohesiveState], bool]
+) -> CohesiveState | None:
+    """The deepest state of the loading path to `start` that is not `beyond`; None if unknown."""
+    if not isinstance(start, CohesiveState) or not start.is_first_loading:
+        return None
+    state: CohesiveState | None = start
+    while state is not None and beyond(state):
+        state = state.before
+    return state
 
 
 def move(
@@ -117,8 +129,9 @@ def load_until(
     If it is true at the beginning, both are this state. `ahead` estimates the distance (m) that is
     left from a state and the stiffness there (N/m).
     """
-    begin = start.indentation if isinstance(start, CohesiveState) else -math.inf
-    before = load_cohesive(contact, begin, start=start, residual=residual)
+    before = _on_the_way(start, reached)
+    if before is None:
+        before = load_cohesive(contact, -math.inf, start=None, residual=residual)
     if reached(before):
         return before, before
     z0 = law_of(contact).equilibrium_separation
@@ -258,7 +271,7 @@ def _between(a: CohesiveState, b: CohesiveState, at: float) -> CohesiveState:
     share = (at - b.indentation) / (a.indentation - b.indentation)
     p = b.box_pressure + share * (reframe(a.box_pressure, a.box, b.box) - b.box_pressure)
     new = solve_cohesive(
-        b.contact, at, b.box, p=p, limit=b.bound, history=b, residual=WORK_RESIDUAL
+        b.contact, at, b.box, p=p, limit=b.bound, history=b, residual=_RESIDUAL
     )
     return with_interaction(
         replace(
@@ -361,13 +374,13 @@ def follow(
         last = length >= left * (1 - 1e-9)
         at = target if last else state.indentation + sign * min(length, 0.5 * left)
         length = abs(at - state.indentation)
-        state_on = _on_wider_box(state, at, target, residual)
+        state_on = _on_fitting_box(state, at, target, residual)
         if state_on is not state:
             rejected += state_on.convolutions
             state = state_on
         try:
             fine = last or state.force <= 0  # the forces of bodies far apart are small
-            step = _try(state, at, residual if fine else max(residual, WORK_RESIDUAL))
+            step = _try(state, at, residual if fine else max(residual, _BETWEEN))
         except NotConvergedError:
             if length <= 8 * _LEAST_STEP * z0:
                 raise
@@ -507,18 +520,25 @@ def _scale(state: CohesiveState, *, loading: bool) -> float:
     return scale + state.plastic_work if loading else scale
 
 
-def _on_wider_box(
+def _on_fitting_box(
     state: CohesiveState, at: float, target: float, residual: float
 ) -> CohesiveState:
-    needed = interacting_box(state.contact, at, state)
+    """`state` on a box for the way to `at`: wider in loading, narrower in unloading."""
+    contact = state.contact
+    if at < state.indentation:
+        box = interacting_box(contact, state.indentation, state)
+        if math.prod(shape_of(box)) > _NARROWER * math.prod(shape_of(state.box)):
+            return state
+        return on_box(state, box, residual=residual)
+    needed = interacting_box(contact, at, state)
     if union(state.box, needed) == state.box:
         return state
-    z0 = law_of(state.contact).equilibrium_separation
+    z0 = law_of(contact).equilibrium_separation
     far = at + (_WIDER - 1) * (max(at, 0.0) + 10 * z0)
-    wider = interacting_box(state.contact, min(far, max(target, at)), state)
-    box = union(state.box, union(needed, wider))
-    assert box is not None
-    return on_box(state, box, residual=max(residual, WORK_RESIDUAL))
+    wider = interacting_box(contact, min(far, max(target, at)), state)
+    joined = union(state.box, union(needed, wider))
+    assert joined is not None
+    return on_box(state, joined, residual=max(residual, _BETWEEN))
 
 
 def separation_of(path: list[State]) -> Separation:
