@@ -61,9 +61,9 @@ def sticking(
     begins = impacts[first]
     contact = case.refined(int(begins.refine)).realisation(0).contact(folder)
     start = None
-    if deepest is not None and contact.adhesion is not None and contact.adhesion.follows_path:
-        if deepest.contact.grid == contact.grid:
-            contact, start = deepest.contact, deepest
+    follows = contact.adhesion is not None and contact.adhesion.follows_path
+    if follows and deepest is not None and deepest.contact.grid == contact.grid:
+        contact, start = deepest.contact, deepest
     begin = _Impact(
         begins.impact_velocity,
         begins.loading_work - begins.unloading_work,

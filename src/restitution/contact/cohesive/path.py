@@ -30,7 +30,6 @@ from restitution.contact.models import Separation
 from restitution.contact.state import State
 from restitution.errors import NotConvergedError
 from restitution.numerics.box import reframe, shape_of, union
-from restitution.numerics.quadrature import integrate_curve
 
 # In a step without a jump, the work of the force must equal the change of energy. This is the
 # largest accepted difference, as a fraction of the reference energy `_scale`.
@@ -41,12 +40,13 @@ ACCURACY = 5e-4
 # difference is larger, the force may have jumped, and the parabola may be right only by chance.
 _CORRECTION = 10.0
 # Tolerances of the solves of unloading, and of the solves between the given depths.
-_RESIDUAL, _BETWEEN = 1e-8, 3e-5
+_RESIDUAL, _BETWEEN = 1e-8, 1e-5
 _FIRST_STEP = 0.25  # length of the first step, in units of the equilibrium separation z₀
 
-# Longest step under tension, as a fraction of the sum of z₀ and the adhesive length, while the gap is
-# below _NEAR z₀. The error of steps under tension is _TENSE times that of others.
-_UNDER_TENSION, _NEAR, _TENSE = 0.4, 2.0, 5.0
+# Longest step under tension, as a fraction of the sum of z₀ and the adhesive length, while the gap
+# is below _NEAR z₀. Under tension, the error of a step is this share of that of others.
+_UNDER_TENSION, _NEAR, _TENSE = 0.4, 2.0, 0.4
+_AT_JUMP = 3e-3  # largest relative error of the largest tension where it ends in a jump
 _GROWTH = 3.0  # largest ratio of the lengths of two steps
 # A path to a force or work goes this multiple of the estimated distance, to end beyond it.
 _BEYOND = 1.02
@@ -224,11 +224,9 @@ def _with_largest_tension(path: Iterator[CohesiveState]) -> Iterator[CohesiveSta
     yield b
 
 
-def _peak(
-    a: CohesiveState | None, b: CohesiveState, c: CohesiveState
-) -> Iterator[CohesiveState]:
+def _peak(a: CohesiveState | None, b: CohesiveState, c: CohesiveState) -> Iterator[CohesiveState]:
     """Yield `b` and the states inserted beside it."""
-    before, after = [], []
+    states = [b]
     left, middle, right = a, b, c
     for _ in range(_MOST_INSERTED):
         if left is None or not left.jumps == middle.jumps == right.jumps:
@@ -236,24 +234,21 @@ def _peak(
         if not middle.force < min(0.0, left.force, right.force):
             break
         at, expected = _vertex(left, middle, right)
-        apart = abs(at - middle.indentation)
-        if apart < 1e-3 * abs(right.indentation - left.indentation):
+        deeper = at > middle.indentation
+        if abs(at - middle.indentation) < _PEAK * abs(right.indentation - left.indentation):
             break
-        new = _between(left if at > middle.indentation else right, middle, at)
-        (before if at > b.indentation else after).append(new)
+        new = _between(left if deeper else right, middle, at)
+        states.append(new)
         if abs(new.force - expected) <= _PEAK * abs(expected):
             break
-        higher, lower = (new, middle) if at > middle.indentation else (middle, new)
         if new.force < middle.force:
-            left, middle, right = (left, new, middle) if at > middle.indentation else (middle, new, right)
-        elif at > middle.indentation:
+            left, right = (left, middle) if deeper else (middle, right)
+            middle = new
+        elif deeper:
             left = new
         else:
             right = new
-    key = lambda state: -state.indentation  # noqa: E731
-    yield from sorted(before, key=key)
-    yield b
-    yield from sorted(after, key=key)
+    yield from sorted(states, key=lambda state: -state.indentation)
 
 
 def _vertex(a: CohesiveState, b: CohesiveState, c: CohesiveState) -> tuple[float, float]:
@@ -270,9 +265,7 @@ def _between(a: CohesiveState, b: CohesiveState, at: float) -> CohesiveState:
     """The equilibrium at an indentation between two states of one branch, near `b`."""
     share = (at - b.indentation) / (a.indentation - b.indentation)
     p = b.box_pressure + share * (reframe(a.box_pressure, a.box, b.box) - b.box_pressure)
-    new = solve_cohesive(
-        b.contact, at, b.box, p=p, limit=b.bound, history=b, residual=_RESIDUAL
-    )
+    new = solve_cohesive(b.contact, at, b.box, p=p, limit=b.bound, history=b, residual=_RESIDUAL)
     return with_interaction(
         replace(
             new,
@@ -361,6 +354,7 @@ def follow(
     if (earlier := _earlier(state, target)) is not None:
         length = max(length, abs(state.indentation - earlier.indentation))
     rejected = 0  # convolutions of steps that were not accepted
+    tension = 0.0
     require_inside_grid(state)
     for _ in range(_MOST_STEPS):
         left = abs(target - state.indentation)
@@ -387,15 +381,18 @@ def follow(
             length /= 4
             continue
         new = step.state
+        here = _scale(new, loading=sign > 0)
         if new.force > 0 and state.force > 0:
             ahead = _work_ahead(state, new, target) if sign > 0 else 0.0
-            allowed = accuracy * max(scale, _scale(new, loading=sign > 0) + ahead)
+            allowed = accuracy * max(scale, here + ahead)
         else:
-            allowed = _TENSE * accuracy * _scale(new, loading=sign > 0)
+            allowed = _TENSE * accuracy * here
         off = step.by_quartic - step.change
         correction = abs(step.by_quartic - step.by_parabola)
         smooth = abs(off) <= allowed and correction <= _CORRECTION * allowed
-        if not smooth and step.uncertainty > allowed and length > _LEAST_STEP * z0:
+        tension = max(tension, -state.force)
+        coarse = step.uncertainty > allowed or _misses_tension(state, length, tension)
+        if not smooth and coarse and length > _LEAST_STEP * z0:
             length /= 2 if step.uncertainty < 4 * allowed else 4
             rejected += new.convolutions
             continue
@@ -421,6 +418,15 @@ def _work_ahead(state: CohesiveState, new: CohesiveState, target: float) -> floa
     left = target - new.indentation
     stiffness = (new.force - state.force) / (new.indentation - state.indentation)
     return left * (new.force + 0.5 * max(stiffness, 0.0) * left)
+
+
+def _misses_tension(state: CohesiveState, length: float, tension: float) -> bool:
+    """Whether the largest tension may be larger than `tension`, that at `state`, before a jump."""
+    before = state.before
+    if before is None or state.force >= 0 or -state.force < tension:
+        return False
+    slope = (state.force - before.force) / (state.indentation - before.indentation)
+    return slope * length > _AT_JUMP * tension
 
 
 def _to_tension(state: CohesiveState, length: float) -> float:
@@ -546,9 +552,7 @@ def separation_of(path: list[State]) -> Separation:
     lost = end.adhesive_loss - start.adhesive_loss
     plastic = end.plastic_work - start.plastic_work
     work = start.potential_energy - lost - plastic
-    depth, force = ([getattr(state, key) for state in path] for key in ("indentation", "force"))
-    by_force = end.potential_energy - integrate_curve(depth, force)
-    steps = max(abs(end.work_error - start.work_error), abs(by_force - work))
+    steps = abs(end.work_error - start.work_error)
     last = max((k for k, state in enumerate(path) if state.contact_nodes), default=0)
     return Separation(
         unloading_work=work,
