@@ -46,7 +46,9 @@ _FIRST_STEP = 0.25  # length of the first step, in units of the equilibrium sepa
 # Longest step under tension, as a fraction of the sum of z₀ and the adhesive length, while the gap
 # is below _NEAR z₀. Under tension, the error of a step is this share of that of others.
 _UNDER_TENSION, _NEAR, _TENSE = 0.4, 2.0, 0.4
-_AT_JUMP = 3e-3  # largest relative error of the largest tension where it ends in a jump
+# Largest relative error of the largest tension where it ends in a jump, but no step is made shorter
+# than _AT_FOLD z₀ for it.
+_AT_JUMP, _AT_FOLD = 3e-3, 0.01
 _GROWTH = 3.0  # largest ratio of the lengths of two steps
 # A path to a force or work goes this multiple of the estimated distance, to end beyond it.
 _BEYOND = 1.02
@@ -172,7 +174,7 @@ def _separating(
             state = _reversed(loaded, earlier)
             tension = max(tension, -state.force)
             yield state
-    shared = _shared(state, known)
+    shared = _shared(loaded, state.indentation, known)
     for meeting in shared[:: max(1, len(shared) // _MEETINGS)]:
         for new in follow(state, meeting.indentation, **options):
             tension = max(tension, -new.force)
@@ -276,14 +278,18 @@ def _between(a: CohesiveState, b: CohesiveState, at: float) -> CohesiveState:
     )
 
 
-def _shared(state: CohesiveState, known: Sequence[State]) -> list[CohesiveState]:
-    """The states of `known` in contact that unloading from `state` may pass through."""
+def _shared(
+    loaded: CohesiveState, indentation: float, known: Sequence[State]
+) -> list[CohesiveState]:
+    """The states of `known`, not above `indentation`, that unloading may pass through."""
     path = [cast(CohesiveState, earlier) for earlier in known]
-    if not path or path[0].contact is not state.contact:
+    if not path or path[0].contact is not loaded.contact:
         return []
-    if state.plastic_displacement.any() or path[-1].plastic_displacement.any():
+    if loaded.plastic_displacement.any() or path[-1].plastic_displacement.any():
         return []
-    return path if path[0].indentation < state.indentation else []
+    if path[0].indentation >= loaded.indentation:
+        return []
+    return [state for state in path if state.indentation <= indentation]
 
 
 def _is_same(state: CohesiveState, other: CohesiveState) -> bool:
@@ -423,7 +429,8 @@ def _work_ahead(state: CohesiveState, new: CohesiveState, target: float) -> floa
 def _misses_tension(state: CohesiveState, length: float, tension: float) -> bool:
     """Whether the largest tension may be larger than `tension`, that at `state`, before a jump."""
     before = state.before
-    if before is None or state.force >= 0 or -state.force < tension:
+    shortest = _AT_FOLD * law_of(state.contact).equilibrium_separation
+    if before is None or state.force >= 0 or -state.force < tension or length < shortest:
         return False
     slope = (state.force - before.force) / (state.indentation - before.indentation)
     return slope * length > _AT_JUMP * tension
