@@ -219,9 +219,16 @@ class Adhesion(ABC):
         """Move a deformed contact to another indentation (m)."""
 
     def enclose(
-        self, contact: Contact, reached: Callable[[State], bool], start: State | None
+        self,
+        contact: Contact,
+        reached: Callable[[State], bool],
+        ahead: Callable[[State, float], float],
+        start: State | None,
     ) -> tuple[State, State] | None:
-        """Last state of loading that is not `reached` and the first that is; None: no path."""
+        """Last state of loading that is not `reached` and the first that is; None: no path.
+
+        `ahead` estimates the distance (m) left from a state and the stiffness there (N/m).
+        """
         return None
 
     def first_depth(self, contact: Contact, work: float, shallow: float) -> float:
