@@ -22,6 +22,8 @@ PARTS = ("mdr.lmp",)  # included by another template
 def exports(law, points, mixed, on_wall):
     """Every file of every code by name, for several tables of laws."""
     adhesive = law(work_of_adhesion=0.2, smooth_sticking_velocity=0.01)
+    pulled = tuple(replace(point, pull_off_force=1e-5) for point in adhesive.points)
+    adhesive = replace(adhesive, points=pulled)
     several = [found for _, _, found in mixed.pairs()]
     cases = {"fitted": [points], "adhesive": [adhesive], "mixed": several}
     found = {
@@ -79,7 +81,7 @@ def test_scripts_are_python(exports, texts):
         if name.endswith(".py")
     }
     assert {name.split("_")[1] for name in scripts} == {
-        "drake", "lammps", "liggghts", "mujoco", "yade"
+        "drake", "lammps", "liggghts", "mujoco", "python", "yade"
     }  # fmt: skip
     for name, text in scripts.items():
         compile(text, name, "exec")
@@ -115,7 +117,7 @@ def test_commands_come_first_and_equal_warnings_once(mixture, code):
         assert "WARNING: all pairs: the grid is coarse at 0 depths (with other" in text, name
         if name.endswith(".txt"):
             continue
-        sign = "//" if name.endswith(".h") else "#"
+        sign = "//" if name.endswith((".h", ".c")) else "#"
         lines = [line for line in _without_xml_comments(text).splitlines() if line.strip()]
         words = [line for line in lines if not line.lstrip().startswith(sign)]
         assert lines.index(words[0]) < 10, name
