@@ -25,7 +25,7 @@ SOURCES = Path(__file__).parents[1] / "src" / "restitution" / "numerics"
 # code. Tests that run a case in a process of its own are marked one by one.
 PROGRAMS = {
     *("browser", "opened", "app", "own_app", "cluster"),
-    *("lammps", "lammps_environment", "liggghts", "yade", "python_with"),
+    *("lammps", "lammps_environment", "liggghts", "yade", "kratos", "python_with"),
 }
 
 

@@ -125,7 +125,7 @@ class FigureFormat(StrEnum):
 # DEM codes and formats to which laws can be exported.
 ExportFormat = StrEnum(
     "ExportFormat",
-    "lammps liggghts yade mercurydpm edem mujoco drake c python csv",
+    "lammps liggghts yade mercurydpm edem kratos mujoco drake c python csv",
 )
 
 CaseFile = Annotated[Path, given("CASE", "Case file (TOML).")]

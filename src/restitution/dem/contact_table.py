@@ -96,6 +96,7 @@ def _ends(law: Law) -> tuple[Array, Array]:
     known = np.isfinite(share)
     if known.any():
         return np.interp(np.log(depth), np.log(depth[known]), share[known]) * depth, pull
-    span = energy * (_POWER + 1) / np.maximum(force - _POWER * pull, 0.1 * force)
+    stiff = np.maximum(force - _POWER * pull, 0.1 * force)
+    span = np.divide(energy * (_POWER + 1), stiff, out=depth.copy(), where=stiff > 0)
     floor = np.divide(-1.5 * energy, pull, out=np.zeros_like(pull), where=pull > 0)
     return depth - np.maximum(span, floor), pull

@@ -17,7 +17,7 @@ from restitution.laws.law_files import law_rows
 from restitution.results.writer import replace_file, table_text, writing
 
 CODES = (
-    *("lammps", "liggghts", "yade", "mercurydpm", "edem", "mujoco", "drake"),
+    *("lammps", "liggghts", "yade", "mercurydpm", "edem", "kratos", "mujoco", "drake"),
     *("c", "python", "csv"),
 )
 WHOLE = ("c", "python", "csv")

@@ -156,6 +156,15 @@ class Export:
             lines.append("WARNINGS are at the end of this file.")
         return commented(wrapped(lines), sign)
 
+    def lines(self) -> list[str]:
+        """Title, file of notes and warnings, for files without comments."""
+        return list(
+            map(
+                comment_text,
+                [self._title(), f"Types, errors, origin: {self.notes_name}", *self._ending()],
+            )
+        )
+
     def ending(self, sign: str) -> str:
         """The comment at the end of each exported file: all warnings, or nothing."""
         return commented(wrapped(self._ending()), sign)
@@ -238,6 +247,12 @@ def number(value: float) -> str:
     return f"{value:.9g}"
 
 
+def _real(value: float) -> str:
+    """A number that readers of JSON cannot take for an integer."""
+    text = number(value)
+    return text if any(sign in text for sign in ".e") else f"{text}.0"
+
+
 def _numbers(values: Iterable[float]) -> str:
     return textwrap.fill(
         ", ".join(map(number, values)), _WIDTH, initial_indent="    ", subsequent_indent="    "
@@ -265,6 +280,7 @@ def _environment() -> Environment:
         "number": number,
         "comment_text": comment_text,
         "numbers": _numbers,
+        "real": _real,
         "quantity": quantity,
         "xml_safe": _xml_safe,
     }
