@@ -4,7 +4,6 @@ import importlib.util
 import math
 import shutil
 import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -100,7 +99,9 @@ def printed(program, *arguments, status=0):
 
 
 def module(folder):
-    spec = importlib.util.spec_from_file_location("contact_of_a_law", folder / "restitution_contact.py")
+    spec = importlib.util.spec_from_file_location(
+        "contact_of_a_law", folder / "restitution_contact.py"
+    )
     loaded = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(loaded)
     return loaded
@@ -136,7 +137,9 @@ def test_the_driver_has_40_lines_of_code(laws):
 def test_random_sequences_never_gain_energy(laws, texts, name):
     folder = texts(to_c(pair_table([laws[name]]), None))
     shutil.copy(Path(__file__).with_name("reapproach.c"), folder)
-    done = subprocess.run([compiled(folder, "reapproach.c"), "1500"], capture_output=True, text=True)
+    done = subprocess.run(
+        [compiled(folder, "reapproach.c"), "1500"], capture_output=True, text=True
+    )
     ended, gain = done.stdout.split()
     assert int(ended) > 500
     assert float(gain) < 1e-12
@@ -145,7 +148,9 @@ def test_random_sequences_never_gain_energy(laws, texts, name):
 def test_a_law_without_loss_never_gains(law, constant, texts):
     folder = texts(to_c(pair_table([constant(law(), 1.0)]), None))
     shutil.copy(Path(__file__).with_name("reapproach.c"), folder)
-    done = subprocess.run([compiled(folder, "reapproach.c"), "1500"], capture_output=True, text=True)
+    done = subprocess.run(
+        [compiled(folder, "reapproach.c"), "1500"], capture_output=True, text=True
+    )
     assert float(done.stdout.split()[1]) < 1e-12
 
 
@@ -344,7 +349,7 @@ def test_no_velocity_is_needed_and_notes_say_what_holds(laws):
 def test_a_law_whose_indentations_do_not_increase_is_refused(law):
     base = law()
     points = tuple(replace(point, indentation=1e-6) for point in base.points)
-    with pytest.raises(CaseError, match="glass.* indentations of its law do not increase"):
+    with pytest.raises(CaseError, match=r"glass.* indentations of its law do not increase"):
         to_c(pair_table([replace(base, points=points)]), None)
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import restitution.dem
-from restitution.dem.export import CODES, export
+from restitution.dem.export import ADHESIVE, CODES, export
 
 TEMPLATES = Path(restitution.dem.__file__).parent / "templates"
 WITHOUT_TEMPLATES = ("csv", "edem")  # tables, written by the csv module
@@ -30,12 +30,14 @@ def exports(law, points, mixed, on_wall):
         (case, code, name): text
         for case, laws in cases.items()
         for code in CODES
+        if code not in ADHESIVE or case == "adhesive"
         for name, text in export(laws, code, 1.0).items()
     }
     of_wall = [each for _, _, each in on_wall.pairs()]
     return found | {
         ("wall", code, name): text
         for code in CODES
+        if code not in ADHESIVE
         for name, text in export(of_wall, code, 1.0).items()
     }
 
@@ -81,7 +83,7 @@ def test_scripts_are_python(exports, texts):
         if name.endswith(".py")
     }
     assert {name.split("_")[1] for name in scripts} == {
-        "drake", "lammps", "liggghts", "mujoco", "python", "yade"
+        "drake", "kratos", "lammps", "liggghts", "mujoco", "python", "yade"
     }  # fmt: skip
     for name, text in scripts.items():
         compile(text, name, "exec")
@@ -110,7 +112,7 @@ def mixture(law):
             for k, (one, two) in enumerate(pairs)]  # fmt: skip
 
 
-@pytest.mark.parametrize("code", [code for code in CODES if code != "csv"])
+@pytest.mark.parametrize("code", [code for code in CODES if code not in ("csv", *ADHESIVE)])
 def test_commands_come_first_and_equal_warnings_once(mixture, code):
     for name, text in export(mixture, code, 1.0).items():
         assert text.count("WARNING:") == 1, name

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -44,7 +45,7 @@ def contact_table(law: Law) -> ContactTable:
         )
     at = loading_force(depth, force, work)
     nodes = [depth[0] * _START[1:]]
-    for below, above in zip(depth[:-1], depth[1:], strict=True):
+    for below, above in pairwise(depth.tolist()):
         nodes.append(np.geomspace(below, above, _BETWEEN, endpoint=False))
     x = np.concatenate([*nodes, depth[-1:]])
     # At first touch an attraction jumps; the force is linear from there (`loading_force`).

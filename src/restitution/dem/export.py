@@ -16,8 +16,11 @@ from restitution.laws.law import Law
 from restitution.laws.law_files import law_rows
 from restitution.results.writer import replace_file, table_text, writing
 
+ADHESIVE = ("lammps-adhesive", "liggghts-adhesive")
+"""Variants with adhesive contact models; at least one pair must have adhesion."""
 CODES = (
     *("lammps", "liggghts", "yade", "mercurydpm", "edem", "kratos", "mujoco", "drake"),
+    *ADHESIVE,
     *("c", "python", "csv"),
 )
 WHOLE = ("c", "python", "csv")
@@ -89,7 +92,7 @@ def write_export(texts: dict[str, str], out: Path) -> list[Path]:
 
 
 def _module(code: str) -> ModuleType:
-    return import_module(f"restitution.dem.codes.{code}")
+    return import_module(f"restitution.dem.codes.{code.replace('-', '_')}")
 
 
 def _table(table: PairTable, velocity: float | None) -> str:

@@ -23,8 +23,8 @@ NOTE = (
     "steps contacts begin too late, and e rises from 0.5 to 0.72."
 )
 _ENDS = (
-    "the overlap is back to zero. The force is tensile shortly before, due to damping. e holds with "
-    "NeighbourSearchFrequency = 1; with the default of 50 steps, or less tolerance than the way of "
+    "the overlap is back to zero. The force is tensile shortly before, due to damping. e holds "
+    "with NeighbourSearchFrequency = 1; with the default of 50 steps, or less tolerance than the way of "
     "50 steps, contacts begin too late and e is too large (1.158 for 1). Time step: 1/50 of the "
     "elastic contact time returns 0.501 for 0.5, 1/10 returns 0.515."
 )
