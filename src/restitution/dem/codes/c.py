@@ -3,9 +3,9 @@
 The force follows the stored loading curve, and an unloading curve F = (F_m + F_c) sⁿ − F_c with s
 from 1 at the largest indentation to 0 at separation, whose exponent gives the work that the law
 returns. A leapfrog with the forces F_k at the indentations δ_k does exactly the work
-Σ ½(F_k + F_{k+1})(δ_{k+1} − δ_k) on the bodies. The contact adds up this sum, so it knows the
-energy of the impact without the masses, loses the part that the law loses, and returns no more than the
-rest, with any time step.
+Σ ½(F_k + F_k₊₁)(δ_k₊₁ − δ_k) on the bodies. The contact adds up this sum, so it knows the energy of
+the impact without the masses, loses the part that the law loses, and returns no more than the rest,
+with any time step.
 """
 
 from __future__ import annotations

@@ -24,9 +24,9 @@ NOTE = (
 )
 _ENDS = (
     "the overlap is back to zero. The force is tensile shortly before, due to damping. e holds "
-    "with NeighbourSearchFrequency = 1; with the default of 50 steps, or less tolerance than the way of "
-    "50 steps, contacts begin too late and e is too large (1.158 for 1). Time step: 1/50 of the "
-    "elastic contact time returns 0.501 for 0.5, 1/10 returns 0.515."
+    "with NeighbourSearchFrequency = 1; with the default of 50 steps, or a search tolerance below "
+    "the way of these steps, contacts begin too late and e is too large (1.158 for 1). Time step: "
+    "1/50 of the elastic contact time returns 0.501 for 0.5, 1/10 returns 0.515."
 )
 _STEPS = 500  # number of time steps in the contact of the test collision
 _PACKING_STEPS = 25
