@@ -106,7 +106,10 @@ if __name__ == "__main__":
             lammps("mindlin NULL 1.0 0.5"),
         ),
     ]
-    text = "# The portable contact\n\nTime of one call of `restitution_normal`, beside one pair in LAMMPS.\n\n"
+    text = (
+        "# The portable contact\n\n"
+        "Time of one call of `restitution_normal`, beside one pair in LAMMPS.\n\n"
+    )
     text += "| | ns |\n|---|---|\n" + "".join(f"| {name} | {ns:.0f} |\n" for name, ns in rows)
     Path(__file__).with_suffix(".md").write_text(text)
     print(text)
