@@ -67,7 +67,7 @@ class AdhesiveFit:
 
     `pull_off_force` (N) is that of the law. `sticks_below` (m/s) is the sticking velocity of the
     model; `worst` and `worst_at` are the largest difference of e above 1.2 times the sticking
-    velocity of the law, and its velocity (m/s).
+    velocity of the law, and its velocity (m/s). `miss` is the sum of squares of the fit.
     """
 
     pull_off_force: float
@@ -75,6 +75,7 @@ class AdhesiveFit:
     sticks_below: float
     worst: float
     worst_at: float
+    miss: float
 
 
 def jkr_model(law: Law, force: float, *, viscoelastic: bool) -> DampedAdhesion:
@@ -96,6 +97,20 @@ def jkr_model(law: Law, force: float, *, viscoelastic: bool) -> DampedAdhesion:
         damping,
         _critical(law) / float(np.interp(top / 3, a**2 / law.radius, damping)),
     )
+
+
+def dmt_model(law: Law, force: float, *, viscoelastic: bool) -> DampedAdhesion:
+    """LAMMPS' `dmt`, Hertz minus the pull-off force `force` (N) while the spheres overlap.
+
+    Without damping it loses no energy. The damping is as in `jkr_model`.
+    """
+    stiffness = 4 / 3 * law.contact_modulus * math.sqrt(law.radius)
+    deepest = float(law.column("indentation").max())
+    top = 3 * max(deepest, (force / stiffness) ** (2 / 3))
+    depth = top * np.linspace(0, 1, _NODES) ** 2
+    damping = np.sqrt(law.radius * depth) * law.mass if viscoelastic else np.ones_like(depth)
+    scale = float(np.interp(deepest, depth, damping))
+    return DampedAdhesion(depth, stiffness * depth**1.5 - force, damping, _critical(law) / scale)
 
 
 def area_model(law: Law, force: float) -> DampedAdhesion:
@@ -148,6 +163,7 @@ def fit_damping(model: DampedAdhesion, law: Law, force: float) -> AdhesiveFit:
         sticks_below=_sticks_below(
             lambda v, t: model.restitution(v, law.mass, strength, t), law, force
         ),
+        miss=float(min(result.fun, miss(best))),
         worst=float(off[k]),
         worst_at=float(above[k]),
     )

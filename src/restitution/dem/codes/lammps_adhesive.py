@@ -1,11 +1,12 @@
-"""LAMMPS: `jkr` with the computed pull-off force, and damping fitted to e.
+"""LAMMPS: `jkr` or `dmt` with the computed pull-off force, and damping fitted to e.
 
 In LAMMPS 22Jul2025 a `jkr` contact ends at its largest tension, F = -F_c with F_c = 3 pi gamma R*,
 not at the smaller indentation at which the spheres snap off. Without damping it therefore sticks
-below 0.703 times the velocity of JKR and Thornton & Ning. `damping velocity` is a constant
-coefficient, `viscoelastic` one times contact radius and mass; the export takes the one whose e is
-closer to the law. e of bodies that yield falls with the velocity, which neither can follow: the
-files state how far e is off.
+below 0.703 times the velocity of JKR and Thornton & Ning. `dmt` loses no energy by itself; it is
+better for small or rough spheres, which `jkr` makes stick too much. `damping velocity` is a
+constant coefficient, `viscoelastic` one times contact radius and mass. The export takes the model and the
+damping that are closest to the law. e of bodies that yield falls with the velocity, which none can
+follow: the files state how far e is off.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from dataclasses import dataclass
 from restitution.dem.codes.lammps import COLLISION, TANGENTIAL, packing, tangential
 from restitution.dem.damped_adhesion import (
     AdhesiveFit,
+    dmt_model,
     fit_damping,
     jkr_model,
     known_pull_off,
@@ -34,13 +36,19 @@ _ENDS = "the tension reaches the pull-off force; without adhesion, the overlap i
 
 
 @dataclass(frozen=True)
-class DampedJKR:
-    """The `jkr` model of an adhesive `pair`: `cohesion` gamma (J/m^2), and the kind of damping."""
+class DampedModel:
+    """The model `name` ("jkr" or "dmt") of an adhesive `pair`, and the kind of its damping."""
 
     pair: ExportedPair
-    cohesion: float
+    name: str
     kind: str
     fit: AdhesiveFit
+
+    @property
+    def cohesion(self) -> float:
+        """LAMMPS' gamma (J/m²): the pull-off force is 3πγR* in jkr and 4πγR* in dmt."""
+        share = {"jkr": 3, "dmt": 4}[self.name]
+        return self.fit.pull_off_force / (share * math.pi * self.pair.law.radius)
 
     @property
     def said(self) -> str:
@@ -71,12 +79,14 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
     } | packing(export, FRAGMENT) | export.notes()  # fmt: skip
 
 
-def _model(pair: ExportedPair) -> DampedJKR:
-    force = known_pull_off(pair.law, pair.velocity)
-    fits = {
-        kind: fit_damping(jkr_model(pair.law, force, viscoelastic=soft), pair.law, force)
-        for kind, soft in (("velocity", False), ("viscoelastic", True))
+def _model(pair: ExportedPair) -> DampedModel:
+    law = pair.law
+    force = known_pull_off(law, pair.velocity)
+    models = {
+        (name, kind): make(law, force, viscoelastic=kind == "viscoelastic")
+        for name, make in (("jkr", jkr_model), ("dmt", dmt_model))
+        for kind in ("velocity", "viscoelastic")
     }
-    kind = min(fits, key=lambda kind: fits[kind].worst)
-    cohesion = force / (3 * math.pi * pair.law.radius)
-    return DampedJKR(pair, cohesion, kind, fits[kind])
+    fits = {key: fit_damping(model, law, force) for key, model in models.items()}
+    name, kind = min(fits, key=lambda key: fits[key].miss)
+    return DampedModel(pair, name, kind, fits[name, kind])
