@@ -11,7 +11,7 @@ FAST_TESTS := tests/theory tests/numerics tests/test_collision.py
 KERNEL_TESTS := tests/numerics/test_compiled.py tests/numerics/convolution/test_operators.py
 WITHOUT_COMPILER := CC=/bin/false CXX=/bin/false
 
-.PHONY: help demo test test-programs test-fast test-kernels test-clang wheel test-wheel fuzz mutation lint docs docs-links test-kratos bench bench-peers bench-periodic clean
+.PHONY: help demo test test-programs test-fast test-kernels test-clang test-kratos wheel test-wheel fuzz mutation lint docs docs-links bench bench-peers bench-periodic clean
 
 .DEFAULT_GOAL := demo
 

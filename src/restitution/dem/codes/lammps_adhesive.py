@@ -4,9 +4,9 @@ In LAMMPS 22Jul2025 a `jkr` contact ends at its largest tension, F = -F_c with F
 not at the smaller indentation at which the spheres snap off. Without damping it therefore sticks
 below 0.703 times the velocity of JKR and Thornton & Ning. `dmt` loses no energy by itself; it is
 better for small or rough spheres, which `jkr` makes stick too much. `damping velocity` is a
-constant coefficient, `viscoelastic` one times contact radius and mass. The export takes the model and the
-damping that are closest to the law. e of bodies that yield falls with the velocity, which none can
-follow: the files state how far e is off.
+constant coefficient, `viscoelastic` one times contact radius and mass. The export takes the model
+and the damping that are closest to the law. e of bodies that yield falls with the velocity, which
+none can follow: the files state how far e is off.
 """
 
 from __future__ import annotations
