@@ -20,6 +20,8 @@ from restitution.errors import CaseError
 from restitution.laws.from_results import bare_law
 from tolerance import approx
 
+pytestmark = pytest.mark.programs  # they compile what is exported
+
 CASE = """
 title = "Rough glass"
 total_error = false
