@@ -27,7 +27,7 @@ from restitution.contact.cohesive.equilibrium import (
 )
 from restitution.contact.contact import Contact
 from restitution.contact.models import Separation
-from restitution.contact.state import State
+from restitution.contact.state import Array, State
 from restitution.errors import NotConvergedError
 from restitution.numerics.box import reframe, shape_of, union
 
@@ -471,12 +471,15 @@ def _try(state: CohesiveState, at: float, residual: float) -> _Step:
     contact, box = state.contact, state.box
     limit, convolutions = contact.plasticity.bound_after(state, at, residual)
     previous = _earlier(state, at)
-    p, u = state.box_pressure, state.box_displacement
+    p = state.box_pressure
+    u: Array | None = state.box_displacement
     if previous is not None:
         ratio = (at - state.indentation) / (state.indentation - previous.indentation)
         if previous.box == box:
             p = p + ratio * (p - previous.box_pressure)
-            u = u + ratio * (u - previous.box_displacement)
+            u = state.box_displacement + ratio * (
+                state.box_displacement - previous.box_displacement
+            )
         else:
             known = reframe(np.ones(shape_of(previous.box), dtype=bool), previous.box, box)
             change = p - reframe(previous.box_pressure, previous.box, box)
