@@ -28,7 +28,7 @@ MOST_STEPS = 300  # Newton steps after which the solve counts as not converged
 _MOST_ITERATIONS = 500  # limit on the conjugate-gradient iterations of one Newton step
 _FORCING = 0.1  # largest relative residual of the linear system of a Newton step
 # The smallest one, as a fraction of the reduction of the residual that is left.
-_ENOUGH = 0.1
+_ENOUGH = 0.01
 
 # Let q be the actual decrease of the energy in a step, divided by the predicted decrease. The step
 # is accepted if q > _TAKEN. The trust region shrinks if q < _POOR. It grows if q > _GOOD and the
