@@ -170,7 +170,7 @@ def test_energies_balance_in_random_contacts(tabor, depth, rough, seed, hard):
     rest = -end.potential_energy  # work of the rest of the way
     by_force = -integrate_curve(depths, forces) - rest
     scale = state.stored_energy + abs(state.interaction_energy)
-    assert by_force == approx(found.unloading_work, abs=max(3 * found.error, 2e-3 * scale))
+    assert by_force == approx(found.unloading_work, abs=max(3 * found.error, 5e-3 * scale))
     assert min(s.adhesive_loss for s in path) >= 0
     assert all(b.adhesive_loss >= a.adhesive_loss for a, b in itertools.pairwise(path))
 

@@ -92,13 +92,12 @@ class CohesiveLaw(Adhesion):
     def gap_at(self, pressure: Array) -> Array:
         """Gap (m) at which the pressure (Pa, not negative) of the law has this value."""
         z0 = self.equilibrium_separation
-        gap = high = np.full(np.shape(pressure), z0)
-        low = high
+        low = high = np.full(np.shape(pressure), z0)
         for share in _SHARES:  # of z₀: positive first, because a law can be singular at gap 0
             if not (short := -self.traction(low) < pressure).any():
                 break
             low = np.where(short, share * z0, low)
-        gap = 0.5 * (low + high)
+        gap: Array = 0.5 * (low + high)
         for _ in range(60):
             over = -self.traction(gap) - pressure
             low, high = np.where(over > 0, gap, low), np.where(over > 0, high, gap)

@@ -27,7 +27,7 @@ from restitution.contact.cohesive.equilibrium import (
 )
 from restitution.contact.contact import Contact
 from restitution.contact.models import Separation
-from restitution.contact.state import State
+from restitution.contact.state import Array, State
 from restitution.errors import NotConvergedError
 from restitution.numerics.box import reframe, shape_of, union
 
@@ -39,13 +39,15 @@ ACCURACY = 5e-4
 # difference must not exceed _CORRECTION times the error that is allowed for the step. If the
 # difference is larger, the force may have jumped, and the parabola may be right only by chance.
 _CORRECTION = 10.0
-# Tolerances of the solves of unloading, and of the solves between the given depths.
-_RESIDUAL, _BETWEEN = 1e-8, 1e-5
+# Tolerances of the solves of unloading under tension and at rest, of the solves of loading between
+# the given depths, whose errors can become plastic displacement, and of unloading under pressure.
+_RESIDUAL, _BETWEEN, _BACK = 1e-8, 1e-5, 1e-4
 _FIRST_STEP = 0.25  # length of the first step, in units of the equilibrium separation z₀
 
 # Longest step under tension, as a fraction of the sum of z₀ and the adhesive length, while the gap
 # is below _NEAR z₀. Under tension, the error of a step is this share of that of others.
-_UNDER_TENSION, _NEAR, _TENSE = 0.4, 2.0, 0.4
+# At least, it is the share _SLIGHT of that where unloading began.
+_UNDER_TENSION, _NEAR, _TENSE, _SLIGHT = 0.4, 2.0, 0.4, 0.02
 # Largest relative error of the largest tension where it ends in a jump, but no step is made shorter
 # than _AT_FOLD z₀ for it.
 _AT_JUMP, _AT_FOLD = 3e-3, 0.01
@@ -353,9 +355,8 @@ def follow(
     z0 = law.equilibrium_separation
     sign = 1.0 if target > state.indentation else -1.0
     shortest = _FIRST_STEP * z0
-    # If the bodies touch, the first step is at least 2 % of the indentation.
-    if state.smallest_gap < 1.1 * z0:
-        shortest = max(shortest, 0.02 * abs(state.indentation))
+    if state.smallest_gap < 1.1 * z0:  # the bodies touch
+        shortest = max(shortest, (0.02 if sign > 0 else 0.08) * abs(state.indentation))
     length = shortest
     if (earlier := _earlier(state, target)) is not None:
         length = max(length, abs(state.indentation - earlier.indentation))
@@ -380,7 +381,8 @@ def follow(
             state = state_on
         try:
             fine = last or state.force <= 0  # the forces of bodies far apart are small
-            step = _try(state, at, residual if fine else max(residual, _BETWEEN))
+            loose = _BETWEEN if sign > 0 else _BACK
+            step = _try(state, at, residual if fine else max(residual, loose))
         except NotConvergedError:
             if length <= 8 * _LEAST_STEP * z0:
                 raise
@@ -392,7 +394,7 @@ def follow(
             ahead = _work_ahead(state, new, target) if sign > 0 else 0.0
             allowed = accuracy * max(scale, here + ahead)
         else:
-            allowed = _TENSE * accuracy * here
+            allowed = accuracy * max(_TENSE * here, _SLIGHT * scale)
         off = step.by_quartic - step.change
         correction = abs(step.by_quartic - step.by_parabola)
         smooth = abs(off) <= allowed and correction <= _CORRECTION * allowed
@@ -471,12 +473,15 @@ def _try(state: CohesiveState, at: float, residual: float) -> _Step:
     contact, box = state.contact, state.box
     limit, convolutions = contact.plasticity.bound_after(state, at, residual)
     previous = _earlier(state, at)
-    p, u = state.box_pressure, state.box_displacement
+    p = state.box_pressure
+    u: Array | None = state.box_displacement
     if previous is not None:
         ratio = (at - state.indentation) / (state.indentation - previous.indentation)
         if previous.box == box:
             p = p + ratio * (p - previous.box_pressure)
-            u = u + ratio * (u - previous.box_displacement)
+            u = state.box_displacement + ratio * (
+                state.box_displacement - previous.box_displacement
+            )
         else:
             known = reframe(np.ones(shape_of(previous.box), dtype=bool), previous.box, box)
             change = p - reframe(previous.box_pressure, previous.box, box)
