@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
-from pydantic import BeforeValidator, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from restitution.case.materials import Material, PoissonsRatio, Property, material, materials
 from restitution.case.quantities import (
     Density,
     Length,
     Pressure,
+    Time,
 )
 from restitution.case.rulebook import Input, key, rules
 from restitution.case.schema import Table
 from restitution.contact.bodies import Body
+from restitution.losses.viscosity import Friction
 
 _REQUIRED = ("youngs_modulus", "poissons_ratio")  # keys that every body needs
 
@@ -63,6 +65,27 @@ class BodyTable(Table):
         "indentation hardness, used where the yield strength is unknown",
         page=Input("Hardness H", slider=(1e6, 1e11), more=True),
     )
+    thickness: Length | None = key(
+        None,
+        "of a wall, for the [bending waves](losses.md) that the impact sends into it; the wall "
+        "needs a density",
+        default="infinite",
+        page=Input(
+            "Thickness", hint="of a wall; if empty, thick", slider=(1e-4, 1.0), more=True
+        ),
+    )
+    loss_tangent: Annotated[float, Field(ge=0, le=1)] | None = key(
+        None,
+        "tan δ, [internal friction](losses.md) at the frequency 1/(2T) of an impact of duration T",
+        default="0",
+        page=Input("Loss tangent tan δ", slider=(0.0, 1.0), more=True),
+    )
+    relaxation_time: Time | None = key(
+        None,
+        "viscosity over modulus, instead of `loss_tangent`",
+        default='`"0 s"`',
+        page=Input("Relaxation time", slider=(1e-9, 1.0), more=True),
+    )
 
     @model_validator(mode="before")
     @classmethod
@@ -84,6 +107,26 @@ class BodyTable(Table):
             if (supplied := getattr(known, key)) is not None
         }
         return {**taken, **table, "material": known.key}
+
+    @model_validator(mode="after")
+    def _with_losses(self) -> Self:
+        if self.thickness is not None and self.radius is not None:
+            raise ValueError(
+                "thickness: belongs to a wall, but this body is a sphere; remove thickness, or "
+                'write radius = "flat"'
+            )
+        if self.loss_tangent is not None and self.relaxation_time is not None:
+            raise ValueError(
+                "loss_tangent, relaxation_time: both describe the internal friction; remove one"
+            )
+        if self.thickness is not None and self.density is None:
+            raise ValueError("density: is missing; give it, because thickness needs the mass")
+        return self
+
+    @property
+    def friction(self) -> Friction:
+        """Internal friction of the body."""
+        return Friction(self.relaxation_time or 0.0, self.loss_tangent or 0.0)
 
     def body(self) -> Body:
         """Make the body that this table describes."""

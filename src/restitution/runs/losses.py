@@ -1,0 +1,99 @@
+"""The columns of a curve for plates, waves and viscosity (`impacts.losses`)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from restitution.contact.bodies import Pair
+from restitution.contact.jkr.unloading_curve import complete_curve
+from restitution.curve.columns import Array, array
+from restitution.curve.curve import UnloadingCurve
+from restitution.curve.follow import Impact
+from restitution.curve.point import Point
+from restitution.impacts.losses import LossFactors, loss_factors
+from restitution.impacts.time_integration import force_of_columns
+from restitution.losses.losses import Losses
+
+_NODES = 33  # of an unloading curve made from its work
+_HERTZ = 1.5  # exponent of an unloading curve whose end is unknown
+_FLATTEST = 0.1  # smallest exponent
+
+
+def unloading_of(impact: Impact) -> UnloadingCurve | None:
+    """The unloading curve of `impact`, if one was computed and the bodies touch."""
+    if not impact.unloading or not impact.state.contact_nodes:
+        return None
+    touch = impact.load.touch
+    x, F = np.array(complete_curve(impact.unloading))[::-1].T
+    return UnloadingCurve(impact.state.indentation + touch, x + touch, F)
+
+
+def with_losses(
+    pair: Pair,
+    losses: Losses,
+    points: Sequence[Point],
+    unloading: Mapping[float, UnloadingCurve],
+) -> list[Point]:
+    """Fill in the columns of the losses of `points`; they stay empty without impact velocities.
+
+    `unloading` has the computed unloading curves by their `Point.indentation`; those of other
+    points are made from the work of unloading.
+    """
+    known: list[Point] = []
+    for point in points:
+        last = known[-1] if known else None
+        if point.impact_velocity > (last.impact_velocity if last else 0.0) and (
+            last is None or point.indentation > last.indentation
+        ):
+            known.append(point)
+    if not known:
+        return list(points)
+    velocity = array(known, "impact_velocity")
+    factors = LossFactors.without(velocity)
+    curves = [c for p in known if (c := unloading.get(p.indentation) or _made(p)) is not None]
+    if losses.present and curves:
+        columns = {name: array(known, name) for name in ("indentation", "force", "loading_work")}
+        columns["impact_velocity"] = velocity
+        columns["separation_indentation"] = np.array([_separation(point) for point in known])
+        factors = loss_factors(force_of_columns(pair, columns, curves), losses, velocity)
+    rows = zip(*factors.columns().values(), strict=True)
+    filled = {
+        id(point): _filled(point, dict(zip(factors.columns(), row, strict=True)))
+        for point, row in zip(known, np.array(list(rows)).tolist(), strict=True)
+    }
+    return [filled.get(id(point), point) for point in points]
+
+
+def _filled(point: Point, factors: Mapping[str, float]) -> Point:
+    product = factors["plate_factor"] * factors["waves_factor"] * factors["viscosity_factor"]
+    product = 1.0 if math.isnan(product) else product  # the bodies stick
+    error = point.restitution * abs(product - factors["together"])
+    own = {name: value for name, value in factors.items() if name != "together"}
+    return replace(
+        point,
+        **own,
+        restitution_with_losses=point.restitution * product,
+        loss_error=0.0 if math.isnan(error) else error,
+    )
+
+
+def _separation(point: Point) -> float:
+    """Indentation (m) at separation; of Hertz's curve with the same work if it is not known."""
+    if not math.isnan(point.separation_indentation):
+        return point.separation_indentation
+    return point.indentation - (_HERTZ + 1) * max(point.unloading_work, 0.0) / abs(point.force)
+
+
+def _made(point: Point) -> UnloadingCurve | None:
+    """The power law F ∝ (δ − δ_s)ⁿ that returns the work of unloading."""
+    end = _separation(point)
+    way = point.indentation - end
+    if not (point.unloading_work > 0 and point.force > 0 and way > 0):
+        return None
+    s: Array = np.linspace(0.0, 1.0, _NODES)
+    power = max(point.force * way / point.unloading_work - 1, _FLATTEST)
+    return UnloadingCurve(point.indentation, end + way * s, point.force * s**power)
