@@ -70,9 +70,7 @@ class BodyTable(Table):
         "of a wall, for the [bending waves](losses.md) that the impact sends into it; the wall "
         "needs a density",
         default="infinite",
-        page=Input(
-            "Thickness", hint="of a wall; if empty, thick", slider=(1e-4, 1.0), more=True
-        ),
+        page=Input("Thickness", hint="of a wall; if empty, thick", slider=(1e-4, 1.0), more=True),
     )
     loss_tangent: Annotated[float, Field(ge=0, le=1)] | None = key(
         None,

@@ -119,10 +119,10 @@ class Case(Table):
         for name, body in self.bodies().items():
             if body.radius is not None:
                 raise ValueError(f'{name}.radius: must be "flat" if the grid is periodic')
-            for key in ("thickness", "loss_tangent", "relaxation_time"):
-                if getattr(body, key) is not None:
+            for loss in ("thickness", "loss_tangent", "relaxation_time"):
+                if getattr(body, loss) is not None:
                     raise ValueError(
-                        f"{name}.{key}: acts in impacts only, and a periodic contact has none; "
+                        f"{name}.{loss}: acts in impacts only, and a periodic contact has none; "
                         "remove it"
                     )
         if self.impact is not None:

@@ -139,3 +139,8 @@ def largest_part(points: Sequence[Point]) -> str:
         return float(np.nansum(array(known, name) ** 2)) if known else 0.0
 
     return max(PARTS, key=squares)
+
+
+def loses(points: Iterable[Point]) -> bool:
+    """Whether plates, waves or viscosity lower the restitution of any point."""
+    return any(point.restitution_with_losses < point.restitution for point in points)

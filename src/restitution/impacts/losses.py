@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from restitution.curve.columns import Array
 from restitution.impacts.time_integration import StoredForce
@@ -71,9 +72,7 @@ def loss_factors(law: StoredForce, losses: Losses, velocity: Array) -> LossFacto
     return LossFactors(alone, ratio[-1], duration)
 
 
-def _rebounds(
-    law: StoredForce, velocity: Array, damping: Sequence[Damping]
-) -> tuple[Array, Array]:
+def _rebounds(law: StoredForce, velocity: Array, damping: Sequence[Damping]) -> tuple[Array, Array]:
     """Rebound over impact velocity (0 if the bodies stick), and duration (s), of each impact."""
     motion = _Motion(law.pair.mass or math.nan, damping)
     deepest = _depths(law, velocity)
@@ -191,10 +190,10 @@ class _Motion:
         start: tuple[Array, Array],
         step: Array,
         around: tuple[Array, Array],
-        ends: Array,
+        ends: NDArray[np.bool_],
         over: Callable[[_Table, Array, Array], Array],
     ) -> tuple[Array, tuple[Array, Array]]:
-        """Steps and states where `over` is 0, by regula falsi, for the impacts that `ends` names."""
+        """Steps and states where `over` is 0, by regula falsi, for the impacts in `ends`."""
         low, high = np.zeros_like(step), step
         at_low, at_high = around
         for _ in range(4):

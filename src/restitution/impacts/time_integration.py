@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -105,7 +105,7 @@ class StoredForce:
     unloading_from: Array
     unloading: tuple[tuple[Array, Array], ...]
     roughness: StoredRoughness | None = None
-    losses: Losses = Losses()
+    losses: Losses = field(default_factory=Losses)
 
     def __post_init__(self) -> None:
         if self.pair.mass is None:
@@ -140,7 +140,7 @@ class StoredForce:
         return lambda s: (1 - share) * lower(s) + share * upper(s), True
 
     def neighbours(self, deepest: float) -> tuple[int, int, float]:
-        """The stored curves around `deepest` (m), equal outside them, and the second one's share."""
+        """Numbers of the stored curves around `deepest` (m), and the share of the second."""
         depths = self.unloading_from
         near = np.flatnonzero(np.abs(depths / deepest - 1) < _SAME)
         after = int(near[0]) if near.size else int(np.searchsorted(depths, deepest))
@@ -232,7 +232,9 @@ def collide_in_time(law: StoredForce, velocity: float) -> ReferenceCollision:
     assert m2 is not None
     damping = Damping()
     if law.losses.present:
-        damping = law.losses.damping(collide_in_time(replace(law, losses=Losses()), velocity).duration)
+        damping = law.losses.damping(
+            collide_in_time(replace(law, losses=Losses()), velocity).duration
+        )
     motion = _Motion(m1, m2, damping, h=_DIFFERENCE * law.deepest)
     share = 1.0 if math.isinf(m2) else 0.0 if math.isinf(m1) else m2 / (m1 + m2)
     start = np.array([0.0, 0.0, share * velocity, (share - 1) * velocity, *motion.rest])
@@ -241,7 +243,7 @@ def collide_in_time(law: StoredForce, velocity: float) -> ReferenceCollision:
         return motion.closing(law.loading, y)
 
     def too_deep(t: float, y: Array) -> float:
-        return motion.indentation(y) - law.deepest * (1 + _SLACK)
+        return float(motion.indentation(y)) - law.deepest * (1 + _SLACK)
 
     def integrate(force: Force, start: Array, *events: Callable[[float, Array], float]) -> Any:
         rates = motion.rates(force)
@@ -254,11 +256,11 @@ def collide_in_time(law: StoredForce, velocity: float) -> ReferenceCollision:
             "stop, so the stored forces contradict the stored impact velocities; run the case again"
         )
     turn = down.y[:, -1]
-    deepest = motion.indentation(turn)
+    deepest = float(motion.indentation(turn))
     back, end, blended = law.branch(min(deepest, law.deepest))
 
     def parted(t: float, y: Array) -> float:
-        return motion.indentation(y) - end
+        return float(motion.indentation(y)) - end
 
     def held(t: float, y: Array) -> float:
         return motion.closing(back, y) - 1e-9 * velocity

@@ -42,9 +42,7 @@ class Losses:
         """The coefficients of an impact of `duration` (s) without these losses."""
         time = 0.0
         if self.viscosity is not None:
-            time = (
-                self.viscosity.relaxation_time + self.viscosity.share_of_duration * duration
-            )
+            time = self.viscosity.relaxation_time + self.viscosity.share_of_duration * duration
         return Damping(
             mobility=0.0 if self.plate is None else self.plate.mobility,
             radiation=0.0 if self.waves is None else self.waves.radiation,

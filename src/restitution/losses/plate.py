@@ -42,7 +42,7 @@ class Plate:
         2 (Dω²/(ρh))^¼.
         """
         omega = math.pi / duration
-        speed = 2 * (self._stiffness * omega**2 / (self.density * self.thickness)) ** 0.25
+        speed: float = 2 * (self._stiffness * omega**2 / (self.density * self.thickness)) ** 0.25
         return 0.5 * speed * duration
 
     @property

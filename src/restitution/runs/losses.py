@@ -8,18 +8,22 @@ from dataclasses import replace
 
 import numpy as np
 
+from restitution.case.case import Case
 from restitution.contact.bodies import Pair
 from restitution.contact.jkr.unloading_curve import complete_curve
 from restitution.curve.columns import Array, array
 from restitution.curve.curve import UnloadingCurve
 from restitution.curve.follow import Impact
 from restitution.curve.point import Point
+from restitution.display import quantity
 from restitution.impacts.losses import LossFactors, loss_factors
 from restitution.impacts.time_integration import force_of_columns
 from restitution.losses.losses import Losses
+from restitution.theory import Hertz
 
 _NODES = 33  # of an unloading curve made from its work
 _HERTZ = 1.5  # exponent of an unloading curve whose end is unknown
+_TRIPS = 3  # fewest round trips of a wave across a plate during which bending waves form
 _FLATTEST = 0.1  # smallest exponent
 
 
@@ -30,6 +34,63 @@ def unloading_of(impact: Impact) -> UnloadingCurve | None:
     touch = impact.load.touch
     x, F = np.array(complete_curve(impact.unloading))[::-1].T
     return UnloadingCurve(impact.state.indentation + touch, x + touch, F)
+
+
+def loss_information(case: Case) -> str:
+    """What the pair loses beside yielding and adhesion, in words; "" for nothing."""
+    losses, pair = case.losses(), case.pair()
+    if pair.mass is None:
+        return ""
+    said = []
+    if plate := losses.plate:
+        longest = _duration(pair, _velocities(case, pair.mass)[0])
+        said.append(
+            f"bending waves in the wall of {quantity(plate.thickness, 'm')}, which must be free of "
+            f"edges and supports within {quantity(plate.reach(longest), 'm')}"
+        )
+    if losses.waves:
+        said.append("waves in the wall" if not losses.plate else "compression waves in it")
+    if losses.viscosity:
+        said.append("internal friction")
+    without = any(body.radius is None and body.density is None for body in case.bodies().values())
+    if without:
+        said.append("no waves in the wall, because its density is not given")
+    return f"Losses beside yielding and adhesion: {', '.join(said)}." if said else ""
+
+
+def loss_warnings(case: Case) -> list[str]:
+    """Warnings about losses outside the range of their theories."""
+    losses, pair = case.losses(), case.pair()
+    plate = losses.plate
+    if pair.mass is None or plate is None:
+        return []
+    shortest = _duration(pair, _velocities(case, pair.mass)[-1])
+    if shortest >= _TRIPS * plate.round_trip:
+        return []
+    return [
+        f"thickness: at the highest velocity, the contact of smooth bodies lasts "
+        f"{quantity(shortest, 's')}, less than {_TRIPS} round trips of a wave across the wall "
+        f"({quantity(plate.round_trip, 's')}), so plate_factor may be off by as much as it differs "
+        "from waves_factor; a wall as thick as this can be given without thickness"
+    ]
+
+
+def _velocities(case: Case, mass: float) -> tuple[float, float]:
+    """The lowest and highest impact velocity (m/s), estimated for smooth elastic bodies."""
+    pair, ends = case.pair(), (case.depths()[0], case.depths()[-1])
+    if case.impact is not None:
+        return ends
+    smooth = Hertz(pair.radius, pair.contact_modulus)
+    depths = [float(smooth.indentation(end)) if case.load else end for end in ends]
+    low, high = (float(smooth.impact_velocity(depth, mass)) for depth in depths)
+    return low, high
+
+
+def _duration(pair: Pair, velocity: float) -> float:
+    """Duration (s) of an impact of smooth elastic bodies (Johnson 1985, eq. 11.24)."""
+    mass = pair.mass or math.nan
+    scale: float = (mass**2 / (pair.radius * pair.contact_modulus**2 * velocity)) ** 0.2
+    return 2.87 * scale
 
 
 def with_losses(
@@ -72,10 +133,11 @@ def _filled(point: Point, factors: Mapping[str, float]) -> Point:
     product = factors["plate_factor"] * factors["waves_factor"] * factors["viscosity_factor"]
     product = 1.0 if math.isnan(product) else product  # the bodies stick
     error = point.restitution * abs(product - factors["together"])
-    own = {name: value for name, value in factors.items() if name != "together"}
     return replace(
         point,
-        **own,
+        plate_factor=factors["plate_factor"],
+        waves_factor=factors["waves_factor"],
+        viscosity_factor=factors["viscosity_factor"],
         restitution_with_losses=point.restitution * product,
         loss_error=0.0 if math.isnan(error) else error,
     )

@@ -39,7 +39,7 @@ from restitution.runs.error_budget import (
     total_error_summary,
 )
 from restitution.runs.log import RunLog, Say, ignore, solved_with
-from restitution.runs.losses import unloading_of, with_losses
+from restitution.runs.losses import loss_warnings, unloading_of, with_losses
 from restitution.runs.messages import input_warnings, require_possible
 from restitution.runs.oblique import is_oblique, oblique_points
 from restitution.runs.refinement import with_chosen_adhesion, with_chosen_grids
@@ -118,7 +118,7 @@ def run_case(
         case = with_chosen_adhesion(case, contact, run.warn)
         deepest = deepest_indentation(case)
         require_possible(contact, deepest)
-        for warning in omissions(case) + input_warnings(contact, deepest, case.prescribed):
+        for warning in _input_warnings(case, contact, deepest):
             run.warn(warning)
         with out.tables():
             failure = _load_and_unload(case, folder, contact, out, run, go_on=errors)
@@ -142,6 +142,11 @@ def run_case(
         if failure is not None:
             raise failure
     return run.summary
+
+
+def _input_warnings(case: Case, contact: Contact, deepest: float) -> list[str]:
+    of_contact = input_warnings(contact, deepest, case.prescribed)
+    return [*omissions(case), *loss_warnings(case), *of_contact]
 
 
 def _write_results(
