@@ -5,8 +5,15 @@ from __future__ import annotations
 import math
 from typing import Annotated, Any, Self
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import (
+    BeforeValidator,
+    Field,
+    ModelWrapValidatorHandler,
+    PrivateAttr,
+    model_validator,
+)
 
+from restitution.case.hardness import converted, ratio_of, strength
 from restitution.case.materials import Material, PoissonsRatio, Property, material, materials
 from restitution.case.quantities import (
     Density,
@@ -57,8 +64,14 @@ class BodyTable(Table):
     )
     yield_strength: Pressure | None = key(
         None,
-        "yield strength Y from a tensile test. The keys of `[interface]` below say how it is used",
-        page=Input("Yield strength Y", slider=(1e6, 1e11), more=True),
+        'yield strength Y from a tensile test, or `"H/2.8"` from the [hardness](materials.md) of a '
+        "metal. The keys of `[interface]` below say how it is used",
+        page=Input(
+            "Yield strength Y",
+            hint='of a tensile test, or "H/2.8" of the hardness',
+            slider=(1e6, 1e11),
+            more=True,
+        ),
     )
     hardness: Pressure | None = key(
         None,
@@ -84,6 +97,21 @@ class BodyTable(Table):
         default='`"0 s"`',
         page=Input("Relaxation time", slider=(1e-9, 1.0), more=True),
     )
+
+    _ratio: float | None = PrivateAttr(default=None)
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _with_strength(cls, value: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        """Read `yield_strength = "H/2.8"`, and remember the ratio."""
+        if not isinstance(value, dict) or (ratio := ratio_of(value.get("yield_strength"))) is None:
+            return handler(value)
+        hardness, name = value.get("hardness"), value.get("material")
+        if hardness is None and isinstance(name, str) and (known := material(name).hardness):
+            hardness = f"{known.value!r} Pa"
+        table = handler({**value, "yield_strength": converted(hardness, ratio)})
+        table._ratio = ratio
+        return table
 
     @model_validator(mode="before")
     @classmethod
@@ -132,15 +160,26 @@ class BodyTable(Table):
         return Body(radius, self.youngs_modulus, self.poissons_ratio, self.density)
 
     def from_library(self) -> dict[str, Property[Any]]:
-        """Return the values taken from the materials library, with their spread and source."""
-        if self.material is None:
-            return {}
-        known = material(self.material)
-        return {
-            key: supplied
-            for key in FROM_LIBRARY
-            if (supplied := getattr(known, key)) and supplied.value == getattr(self, key)
-        }
+        """Return the values taken from the library or converted, with their spread and source."""
+        values: dict[str, Property[Any]] = {}
+        if self.material is not None:
+            known = material(self.material)
+            values = {
+                key: supplied
+                for key in FROM_LIBRARY
+                if (supplied := getattr(known, key)) and supplied.value == getattr(self, key)
+            }
+        if self._ratio is not None and self.hardness is not None:
+            own = strength(self.hardness, self._ratio)
+            values |= {"yield_strength": own} if own.value == self.yield_strength else {}
+        return values
+
+    @property
+    def strength_in_words(self) -> str:
+        """The yield strength, and how it follows from the hardness."""
+        words = f"{1e-6 * (self.yield_strength or math.nan):.6g} MPa"
+        known = self.from_library().get("yield_strength")
+        return f"{words} ({known.conversion})" if known and known.conversion else words
 
 
 # Keys of a body that the materials library can supply, with their SI units.
