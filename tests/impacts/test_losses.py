@@ -61,7 +61,7 @@ def test_a_contact_that_ends_where_the_whole_force_is_zero(inelasticity, e):
     """Brilliantov's law ends there, before the elastic force is zero."""
 
     def rates(t, y):
-        return [y[1], -max(y[0], 0.0) ** 1.5 - 1.5 * inelasticity * max(y[0], 0) ** 0.5 * y[1]]
+        return [y[1], -(max(y[0], 0.0) ** 1.5) - 1.5 * inelasticity * max(y[0], 0) ** 0.5 * y[1]]
 
     def pulls(t, y):
         return 1.0 if y[1] > 0 else -rates(t, y)[1]
@@ -82,9 +82,7 @@ def test_a_steel_ball_of_6_mm_on_sheets(thickness, e):
     assert factor(Losses(plate=Plate(1e-3 * thickness, *STEEL))) == approx(e, abs=2e-3)
 
 
-@pytest.mark.parametrize(
-    ("nu", "k"), [(0.2, 1.097), (0.25, 1.112), (0.3, 1.132), (0.33, 1.148)]
-)
+@pytest.mark.parametrize(("nu", "k"), [(0.2, 1.097), (0.25, 1.112), (0.3, 1.132), (0.33, 1.148)])
 def test_the_energy_of_waves_in_a_half_space_of_the_same_material(nu, k):
     """1 − e² = k (V/c₀)^0.6, c₀ = √(E/ρ)."""
     pair = Pair(Body(3e-3, 206e9, nu, 7830.0), Body(math.inf, 206e9, nu, 7830.0))

@@ -270,7 +270,9 @@ class InterfaceTable(Table):
             whose = f"of {_named(name, body)}"
             if quantity == "yield_strength" and body.yield_strength is not None:
                 Y = body.yield_strength
-                pressures.append((factor * Y, f"{factor:g} Y {whose}, Y = {body.strength_in_words}"))
+                pressures.append(
+                    (factor * Y, f"{factor:g} Y {whose}, Y = {body.strength_in_words}")
+                )
             elif body.hardness is not None:
                 pressures.append(
                     (body.hardness, f"hardness {whose}, {1e-6 * body.hardness:.6g} MPa")
