@@ -2,10 +2,10 @@
 
     python -m evidence.experiments.experiments
 
-`measured.csv` has the measurements: `read` is "yes" if the number was read in the named source, and
-`counted` why a row does not count. `strength` is H (a hardness, from which Y = H/2.8), Y (a yield
-strength), p (a constant limit of the pressure) or "elastic". Writes `computed.csv` and the figure of
-docs/experiments.md. Takes some minutes.
+`measured.csv` has the measurements: `read` is "yes" if the number was read in the named source,
+and `counted` why a row does not count. `strength` is H (a hardness, from which Y = H/2.8), Y (a
+yield strength), p (a constant limit of the pressure) or "elastic". Writes `computed.csv` and the
+figure of docs/experiments.md. Takes some minutes.
 """
 
 from __future__ import annotations

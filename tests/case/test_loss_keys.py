@@ -79,7 +79,7 @@ def test_refused_values(ball, wall, message):
 
 def test_a_plate_needs_a_density():
     bare = 'second = { radius = "flat", youngs_modulus = "70 GPa", poissons_ratio = 0.2%s }\n'
-    with pytest.raises(CaseError, match="second: density: is missing; .* thickness"):
+    with pytest.raises(CaseError, match=r"second: density: is missing; .* thickness"):
         parse_case(BALL % "" + bare % ', thickness = "1 mm"' + REST)
 
 
@@ -100,7 +100,7 @@ periodic = true
 [indentation]
 values = ["10 nm"]
 """
-    with pytest.raises(CaseError, match="first.thickness: acts in impacts only"):
+    with pytest.raises(CaseError, match=r"first\.thickness: acts in impacts only"):
         parse_case(text)
 
 

@@ -86,14 +86,13 @@ def test_a_loss_that_vanishes_leaves_the_restitution(tmp_path, keys):
 
 
 def test_without_densities_nothing_is_known(tmp_path):
-    text = CASE.replace('second = { material = "steel"', 'second = { material = "steel"').replace(
+    text = CASE.replace(
         'first = { material = "steel", radius = "3 mm" }',
         'first = { radius = "3 mm", youngs_modulus = "200 GPa", poissons_ratio = 0.3, '
         'yield_strength = "2 GPa" }',
     )
-    text = text.replace(
-        '[impact]\nvelocity = ["0.3 m/s", "1 m/s"]', '[indentation]\nvalues = ["2 um"]'
-    )
+    impact = '[impact]\nvelocity = ["0.3 m/s", "1 m/s"]'
+    text = text.replace(impact, '[indentation]\nvalues = ["2 um"]')
     (point,) = run(text, tmp_path / "out").curve.points
     assert math.isnan(point.restitution_with_losses)
     assert point.final == point.restitution
@@ -111,8 +110,14 @@ def test_adhesion_and_losses_together(tmp_path):
     """Each unloading curve is used; the bodies stick at the lower velocity."""
     text = """
 total_error = false
-first = { radius = "20 um", youngs_modulus = "5 GPa", poissons_ratio = 0.3, density = "1200 kg/m^3" }
-second = { radius = "flat", youngs_modulus = "5 GPa", poissons_ratio = 0.3, density = "1200 kg/m^3" }
+first.radius = "20 um"
+first.youngs_modulus = "5 GPa"
+first.poissons_ratio = 0.3
+first.density = "1200 kg/m^3"
+second.radius = "flat"
+second.youngs_modulus = "5 GPa"
+second.poissons_ratio = 0.3
+second.density = "1200 kg/m^3"
 [interface]
 yield_pressure = "elastic"
 work_of_adhesion = "0.1 J/m^2"

@@ -36,8 +36,8 @@ class Property(Table, Generic[Quantity]):
     """One quantity of a material, in SI units.
 
     `low` and `high` are the extremes in the sources, for any grade. `verified` means that `value`
-    was read in the source, or computed from values read there. `conversion` says how `value` follows
-    from another quantity.
+    was read in the source, or computed from values read there. `conversion` says how `value`
+    follows from another quantity.
     """
 
     value: Quantity
