@@ -80,13 +80,13 @@ adhesion = "{adhesion}"
 {range}
 [grid]
 nodes = 96
-spacing = "25 nm"
+spacing = "40 nm"
 [impact]
-from = "0.05 m/s"
-to = "0.5 m/s"
-steps = 4
+from = "0.08 m/s"
+to = "0.3 m/s"
+steps = 3
 [unloading]
-curves = 4
+curves = 3
 """
 
 

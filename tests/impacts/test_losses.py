@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 from elastic_force import elastic
 from restitution.contact.bodies import Body, Pair
@@ -172,3 +173,14 @@ def test_bodies_that_stick_have_no_factor():
     factors = loss_factors(law, Losses(waves=WAVES), np.array([1e-3]))
     assert math.isnan(factors.alone["waves"][0])
     assert factors.alone["plate"][0] == 1.0
+
+
+def test_a_viscosity_fitted_at_one_velocity_predicts_the_others():
+    """A plastic ball on wood (Gugan 2000): 1 − e² = 0.213 + 0.077 V^0.4 from 0.5 to 6 m/s."""
+    plastic = 1.2e9, 0.35, 1113.0
+    law = elastic(Pair(Body(46e-3, *plastic), Body(math.inf, *plastic)), 6.5)
+    V = np.array([0.5, 1.0, 2.19, 5.5, 6.0])
+    measured = np.sqrt(1 - 0.213 - 0.077 * V**0.4)
+    time = brentq(lambda t: factor(viscous(t), 1.0, law) - measured[1], 1e-6, 1e-3)
+    predicted = loss_factors(law, viscous(time), V).together
+    assert np.abs(predicted - measured).max() < 0.01

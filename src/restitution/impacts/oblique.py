@@ -12,7 +12,7 @@ rolling friction, and elastic waves. docs/oblique.md derives the condition of fu
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -29,6 +29,7 @@ from restitution.impacts.time_integration import (
     stored_force,
     table_rows,
 )
+from restitution.losses.losses import Losses
 from restitution.results.reader import RunResults
 
 _STEPS = 4000  # number of time steps of a collision
@@ -168,13 +169,13 @@ def spin_per_impulse(pair: Pair) -> tuple[float, float]:
 
 
 def oblique_force(run: RunResults, key: str = "angle") -> StoredForce:
-    """The force law of a run for oblique impacts; `key` names what asks for them, in messages.
+    """The quasi-static force law of a run for oblique impacts; `key` names what asks for them.
 
     Raises `CaseError` with adhesion or without mass, and `OutputError` without unloading curves.
     """
     if run.case.interface.adhesive_energy > 0:
         raise CaseError(f"{key}: oblique impacts are computed only for pairs without adhesion")
-    return stored_force(run)
+    return replace(stored_force(run), losses=Losses())
 
 
 def course(collision: ObliqueCollision) -> list[dict[str, float]]:
