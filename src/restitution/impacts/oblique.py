@@ -6,7 +6,7 @@ The normal motion is that of a head-on impact at the normal velocity. The contac
 
 for solid spheres; T is the tangential force of a row of springs (`foundation`). Neglected: the
 coupling of normal and tangential displacements of unlike materials, the torque about the normal,
-rolling friction, and elastic waves. docs/oblique.md derives the condition of full slip.
+rolling friction, plates, waves and viscosity. docs/oblique.md derives the condition of full slip.
 """
 
 from __future__ import annotations
@@ -125,6 +125,7 @@ def collide_obliquely(
     if any(math.isinf(body.radius) and spin != 0 for body, spin in bodies):
         raise CaseError("spins: a wall does not rotate; give 0 for the wall")
     V_n, V_t = velocity * math.cos(angle), velocity * math.sin(angle)
+    law = replace(law, losses=Losses())  # its normal motion is quasi-static
     normal = collide_in_time(law, V_n)
     rolling = sum(body.radius * spin for body, spin in bodies if not math.isinf(body.radius))
     mass = law.pair.mass
@@ -169,13 +170,13 @@ def spin_per_impulse(pair: Pair) -> tuple[float, float]:
 
 
 def oblique_force(run: RunResults, key: str = "angle") -> StoredForce:
-    """The quasi-static force law of a run for oblique impacts; `key` names what asks for them.
+    """The force law of a run for oblique impacts; `key` names what asks for them, in messages.
 
     Raises `CaseError` with adhesion or without mass, and `OutputError` without unloading curves.
     """
     if run.case.interface.adhesive_energy > 0:
         raise CaseError(f"{key}: oblique impacts are computed only for pairs without adhesion")
-    return replace(stored_force(run), losses=Losses())
+    return stored_force(run)
 
 
 def course(collision: ObliqueCollision) -> list[dict[str, float]]:
