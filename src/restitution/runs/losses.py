@@ -49,7 +49,7 @@ def loss_information(case: Case) -> str:
             f"edges and supports within {quantity(plate.reach(longest), 'm')}"
         )
     if losses.waves:
-        said.append("waves in the wall" if not losses.plate else "compression waves in it")
+        said.append("waves in the wall" if not losses.plate else "waves as in a thick wall")
     if losses.viscosity:
         said.append("internal friction")
     without = any(body.radius is None and body.density is None for body in case.bodies().values())
@@ -105,22 +105,21 @@ def with_losses(
     points are made from the work of unloading.
     """
     known: list[Point] = []
+    velocity = depth = 0.0  # adhesion alone reaches negative depths
     for point in points:
-        last = known[-1] if known else None
-        if point.impact_velocity > (last.impact_velocity if last else 0.0) and (
-            last is None or point.indentation > last.indentation
-        ):
+        if point.impact_velocity > velocity and point.indentation > depth:
             known.append(point)
+            velocity, depth = point.impact_velocity, point.indentation
     if not known:
         return list(points)
-    velocity = array(known, "impact_velocity")
-    factors = LossFactors.without(velocity)
+    velocities = array(known, "impact_velocity")
+    factors = LossFactors.without(velocities)
     curves = [c for p in known if (c := unloading.get(p.indentation) or _made(p)) is not None]
     if losses.present and curves:
         columns = {name: array(known, name) for name in ("indentation", "force", "loading_work")}
-        columns["impact_velocity"] = velocity
+        columns["impact_velocity"] = velocities
         columns["separation_indentation"] = np.array([_separation(point) for point in known])
-        factors = loss_factors(force_of_columns(pair, columns, curves), losses, velocity)
+        factors = loss_factors(force_of_columns(pair, columns, curves), losses, velocities)
     rows = zip(*factors.columns().values(), strict=True)
     filled = {
         id(point): _filled(point, dict(zip(factors.columns(), row, strict=True)))
