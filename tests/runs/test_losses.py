@@ -7,6 +7,7 @@ import pytest
 from restitution.case.case_file import parse_case
 from restitution.curve.curve import loses
 from restitution.laws.from_results import bare_law
+from restitution.pages.run import write_run_page
 from restitution.results.writer import ResultsFolder
 from restitution.runs.losses import loss_information, loss_warnings
 from restitution.runs.run import run_case
@@ -145,3 +146,9 @@ def test_the_range_of_a_plate_is_checked():
     assert "thickness: at the highest velocity" in warning
     assert "free of edges and supports within" in loss_information(thin)
     assert "internal friction" in loss_information(thin)
+
+
+def test_the_report_has_the_factors(results):
+    page = write_run_page(results.path).read_text()
+    assert "plate_factor" in page
+    assert "with plate, waves and viscosity" in page
