@@ -92,7 +92,8 @@ def _run(
     with on_device(device.value), locked(out):
         folder = ResultsFolder(out)
         say(f"Results go to {out}", errors)
-        losses = "" if read.periodic else loss_information(read)
+        with naming(case):
+            losses = "" if read.periodic else loss_information(read)
         for information in filter(None, (default_yield(read.yielding().source), losses)):
             say(information, errors)
         hint_at_kernels()
