@@ -61,6 +61,7 @@ def test_the_law_returns_the_product(results):
         assert point.factors["plate"] == impact.plate_factor
         assert point.error >= impact.loss_error
     assert law.losses == ("plate", "waves", "viscosity")
+    assert law.conventions.restitution.endswith("times the factors of plate, waves, viscosity")
     assert law.at(1.0).restitution == approx(results.curve.points[-1].final, abs=1e-6)
     between = float(results.curve.with_losses_at(0.6))
     assert law.points[1].restitution < between < law.points[0].restitution

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -99,7 +99,7 @@ def _law(out: Path, run: RunResults) -> Law:
         friction=case.interface.friction,
         model={key: str(value) for key, value in model.items()},
         conventions=Conventions(
-            **summary["conventions"],
+            **_conventions(summary["conventions"], points),
             restitution_error=_error_includes(summary["diagnostics"], wanted=case.total_error),
         ),
         yield_velocity=derived["yield_velocity_m_per_s"],
@@ -122,6 +122,12 @@ def _law(out: Path, run: RunResults) -> Law:
         sticks_below_error=sticking.get("sticks_below_error_m_per_s"),
         warnings=tuple(warnings),
     )
+
+
+def _conventions(stored: Mapping[str, str], points: Sequence[LawPoint]) -> dict[str, str]:
+    lost = [name for name in NAMES if any(point.factors.get(name, 1.0) < 1 for point in points)]
+    more = f", times the factors of {', '.join(lost)}" if lost else ""
+    return {**stored, "restitution": stored["restitution"] + more}
 
 
 def _read(out: Path) -> RunResults:
