@@ -351,7 +351,8 @@ def test_another_body_may_be_the_softer_one_at_an_end_of_the_spread(tmp_path):
     """At the low ends of the spread glass is softer than steel and yields at its hardness."""
     text = (
         'first = { material = "steel", radius = "500 um", yield_strength = "2030 MPa" }\n'
-        'second = "glass"\n[interface]\nplasticity = "expanding-cavity"\n[grid]\nnodes = 64\nspacing = "3 um"\n'
+        'second = "glass"\n[interface]\nplasticity = "expanding-cavity"\n'
+        '[grid]\nnodes = 64\nspacing = "3 um"\n'
         '[indentation]\nvalues = ["8 um"]\n'
     )
     rows, _ = run(text, tmp_path / "out")
