@@ -11,13 +11,18 @@ from restitution.theory import JKR, FirstYield, ThorntonNing
 
 
 def deepest_indentation(case: Case) -> float:
-    """The deepest indentation (m); without [indentation], that of smooth Thornton–Ning bodies.
+    """The deepest indentation (m), by `indentation_at`."""
+    return indentation_at(case, case.depths()[-1])
 
-    NaN for a periodic case without [indentation].
+
+def indentation_at(case: Case, depth: float) -> float:
+    """The indentation (m) at `depth`, one of `case.depths()`: m, N, m/s or Pa.
+
+    Without [indentation], it is that of smooth Thornton–Ning bodies, and NaN for a periodic case.
     """
-    last, pair = case.depths()[-1], case.pair()
+    pair = case.pair()
     if case.indentation is not None:
-        return last
+        return depth
     if case.periodic:
         return math.nan
     # The yield pressure p_y of elastic bodies is infinite, but ThorntonNing needs a finite value.
@@ -25,9 +30,9 @@ def deepest_indentation(case: Case) -> float:
     p_y = min(case.yielding().hardness, pair.contact_modulus)
     smooth = ThorntonNing(pair.radius, pair.contact_modulus, p_y)
     if case.load is not None:
-        return float(smooth.indentation(last))
+        return float(smooth.indentation(depth))
     assert pair.mass is not None  # checked by Case._check_masses
-    return float(smooth.indentation_from_velocity(last, pair.mass))
+    return float(smooth.indentation_from_velocity(depth, pair.mass))
 
 
 def derived_quantities(case: Case, contact: Contact) -> dict[str, float | None]:
