@@ -19,6 +19,7 @@ ROOMS = (
     "contact",
     "collision",
     "curve",
+    "losses",
     "case",
     "results",
     "laws",

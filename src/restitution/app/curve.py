@@ -21,10 +21,12 @@ from restitution.case.case_file import parse_case
 from restitution.case.derived import deepest_indentation
 from restitution.case.omissions import default_yield, omissions
 from restitution.contact.contact import Contact
+from restitution.curve.curve import UnloadingCurve
 from restitution.curve.follow import follow
 from restitution.curve.point import Point
 from restitution.errors import DomainError, RestitutionError
 from restitution.runs.depths import CaseUnloading, loads_of
+from restitution.runs.losses import loss_warnings, unloading_of, with_losses
 from restitution.runs.messages import input_warnings, require_possible
 from restitution.runs.refinement import least_refined, with_chosen_adhesion, with_chosen_grids
 from restitution.runs.smooth import smooth_curve
@@ -83,7 +85,8 @@ class LiveCurves:
         contact = self._contact(case, folder)
         deepest = deepest_indentation(case)
         require_possible(contact, deepest)
-        warnings = omissions(case) + input_warnings(contact, deepest, case.prescribed)
+        warnings = omissions(case) + loss_warnings(case)
+        warnings += input_warnings(contact, deepest, case.prescribed)
         case = with_chosen_adhesion(case, contact, warnings.append)
         return _Curve(case, contact, warnings)
 
@@ -148,6 +151,7 @@ class _Curve:
         """Yield the curve of the case, first its shallow part if it takes long."""
         began = drawn = time.perf_counter()
         count, failed = len(self.case.depths()), 0
+        back: dict[float, UnloadingCurve] = {}
 
         def fail(error: RestitutionError) -> bool:
             nonlocal failed
@@ -159,6 +163,8 @@ class _Curve:
         for impact in follow(loads, CaseUnloading.of_case(self.case), fail):
             check()
             self.points.append(impact.point)
+            if (unloaded := unloading_of(impact)) is not None:
+                back[impact.point.indentation] = unloaded
             self.maps.add(impact.state, impact.point.indentation)
             number = len(self.points) + failed
             if time.perf_counter() - drawn > _PARTIAL and number < count:
@@ -166,6 +172,7 @@ class _Curve:
                 drawn = time.perf_counter()
         if self.failure is not None and not self.points:
             raise self.failure
+        self.points = with_losses(self.case.pair(), self.case.losses(), self.points, back)
         yield self.line(self.points, "", seconds=time.perf_counter() - began)
 
     def line(self, points: list[Point], progress: str, **more: Any) -> str:

@@ -22,6 +22,10 @@ from restitution.contact.cohesive.law import Cohesive
 from restitution.contact.contact import Contact, smooth
 from restitution.contact.models import Adhesion as AdhesionModel
 from restitution.errors import CaseError, SurfaceError
+from restitution.losses.half_space import HalfSpace
+from restitution.losses.losses import Losses
+from restitution.losses.plate import Plate
+from restitution.losses.viscosity import Friction, Viscosity
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface, composite
 from restitution.surfaces.refine import divided
@@ -115,6 +119,12 @@ class Case(Table):
         for name, body in self.bodies().items():
             if body.radius is not None:
                 raise ValueError(f'{name}.radius: must be "flat" if the grid is periodic')
+            for loss in ("thickness", "loss_tangent", "relaxation_time"):
+                if getattr(body, loss) is not None:
+                    raise ValueError(
+                        f"{name}.{loss}: acts in impacts only, and a periodic contact has none; "
+                        "remove it"
+                    )
         if self.impact is not None:
             raise ValueError(
                 "[impact]: the bodies of a periodic contact have infinite mass; give "
@@ -277,6 +287,26 @@ class Case(Table):
                 "first.radius, second.radius: both bodies are flat; one must be a sphere"
             )
         return pair
+
+    def losses(self) -> Losses:
+        """Losses besides yielding and adhesion; a wall without density has no waves."""
+        tables = self.bodies().values()
+        pair = self.pair()
+        wall = next((table for table in tables if table.radius is None), None)
+        plate = waves = None
+        if wall is not None and wall.density is not None:
+            material = wall.youngs_modulus, wall.poissons_ratio, wall.density
+            waves = HalfSpace(*material)
+            plate = None if wall.thickness is None else Plate(wall.thickness, *material)
+        bodies = tuple(
+            (
+                table.friction,
+                pair.contact_modulus * (1 - table.poissons_ratio**2) / table.youngs_modulus,
+            )
+            for table in tables
+        )
+        viscous = any(friction != Friction() for friction, _ in bodies)
+        return Losses(plate, waves, Viscosity(bodies) if viscous else None)
 
     def yielding(self) -> Yielding:
         """The yield model of the contact. Raises `CaseError` if a value for it is missing."""

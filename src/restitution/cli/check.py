@@ -13,6 +13,7 @@ from restitution.case.omissions import default_yield
 from restitution.cli.console import command, errors, print_numbers, say, say_next, warn
 from restitution.contact.contact import Contact
 from restitution.numerics.memory import available, in_words
+from restitution.runs.losses import loss_information, loss_warnings
 from restitution.runs.messages import failure_at_edge, input_warnings, no_range, require_possible
 from restitution.runs.refinement import least_refined
 from restitution.surfaces import describe
@@ -56,10 +57,13 @@ def check(case: Path) -> None:
     print_numbers(table)
     if information := default_yield(read.yielding().source):
         say(information)
+    if not read.periodic and (information := loss_information(read)):
+        say(information)
     deepest = deepest_indentation(read)
     require_possible(contact, deepest)
     with errors.status("checking the surface"):
         warnings += input_warnings(contact, deepest, read.prescribed)
+        warnings += [] if read.periodic else loss_warnings(read)
         if read.interface.adhesion is None and contact.adhesive:
             warnings += no_range(contact)
     for warning in warnings:

@@ -94,6 +94,7 @@ def _about(pair: ExportedPair, code: str, *, pulls: bool) -> list[str]:
         *([f"  title: {title}"] if title else []),
         f"  e = {pair.restitution:.6g} +/- {law.at(velocity).error:.2g} at {velocity:.6g} m/s"
         + _elsewhere(law, velocity),
+        *_losses(law, velocity),
         f"  R* = {law.radius:.6g} m, E* = {law.contact_modulus:.6g} Pa, m* = {law.mass:.6g} kg",
         f"  yield pressure p_y: {p_y}; convention: {law.conventions.yield_pressure}",
         f"  source of the yield pressure: {source}",
@@ -112,6 +113,13 @@ def _elsewhere(law: Law, velocity: float) -> str:
         with suppress(DomainError):
             said.append(f"{law.at(V).restitution:.4g} at {V:.6g} m/s")
     return f" (but {', '.join(said)})" if said else ""
+
+
+def _losses(law: Law, velocity: float) -> list[str]:
+    nearest = min(law.points, key=lambda point: abs(point.velocity - velocity))
+    known = ", ".join(f"{name} {nearest.factors[name]:.4g}" for name in law.losses)
+    at = f"factors at {nearest.velocity:.4g} m/s"
+    return [f"  e includes losses beside yielding and adhesion, {at}: {known}"] if known else []
 
 
 def _adhesion(law: Law, velocity: float, code: str, *, pulls: bool) -> list[str]:

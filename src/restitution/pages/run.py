@@ -15,6 +15,7 @@ from restitution.case.omissions import default_yield
 from restitution.contact.checks.resolution import NODES_PER_PATCH
 from restitution.curve.oblique import ObliquePoint
 from restitution.display import quantity
+from restitution.losses.losses import NAMES
 from restitution.pages.methods import methods
 from restitution.pages.page import Cell, Drawing, Listing, Page, PageTable, write_page
 from restitution.plots.cor import Abscissa
@@ -90,6 +91,8 @@ def _restitution(results: xr.Dataset, abscissa: Abscissa) -> Drawing:
     cor = results["restitution"].values
     resolved = results["resolved"].values.astype(bool)
     errors = ["restitution_error", "total_error", "model_error"]
+    if (results["restitution_with_losses"].values < cor).any():
+        errors += ["restitution_with_losses", *(f"{name}_factor" for name in NAMES)]
     columns = zip(x, cor, resolved, *(results[name].values for name in errors), strict=True)
     few = int(np.count_nonzero(~resolved))
     return Drawing(

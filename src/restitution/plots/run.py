@@ -172,6 +172,9 @@ def restitution_figure(results: xr.Dataset, abscissa: Abscissa) -> Figure:
             open_label=UNRESOLVED,
         )
     )
+    with_losses = results["restitution_with_losses"].values
+    if (with_losses < cor).any():
+        series.append(Line(x, with_losses, "with plate, waves and viscosity", dash=DASH_DOTTED))
     if {f"smooth_{variable}", "smooth_restitution"} <= set(results.variables):
         smooth = scale * results[f"smooth_{variable}"].values
         series.append(Line(smooth, results["smooth_restitution"].values, _SMOOTH, color=GREY))

@@ -48,7 +48,7 @@ MISSING_BAND = 0.03
 
 NOT_INCLUDED = (
     "the model (range of adhesion and model of plasticity, see model_error; half-space), values "
-    "given in the case file, rate effects, elastic waves"
+    "given in the case file, rate effects of yielding"
 )
 
 

@@ -18,7 +18,7 @@ from restitution.contact.interface import interface_of
 from restitution.contact.jkr.unloading_curve import unloading_curve
 from restitution.contact.plasticity.cavity import FULL_CONSTRAINT
 from restitution.contact.state import State
-from restitution.curve.curve import largest
+from restitution.curve.curve import UnloadingCurve, largest
 from restitution.curve.follow import Impact, follow
 from restitution.errors import DomainError, NotConvergedError, RestitutionError
 from restitution.results.interruption import hold_signals
@@ -39,6 +39,7 @@ from restitution.runs.error_budget import (
     total_error_summary,
 )
 from restitution.runs.log import RunLog, Say, ignore, solved_with
+from restitution.runs.losses import loss_warnings, unloading_of, with_losses
 from restitution.runs.messages import input_warnings, require_possible
 from restitution.runs.oblique import is_oblique, oblique_points
 from restitution.runs.refinement import with_chosen_adhesion, with_chosen_grids
@@ -82,6 +83,7 @@ class _Run(RunLog):
     unloading_checks: list[dict[str, float]] = field(default_factory=list)
     sticking: Sticking | None = None
     maps: list[DepthMaps] = field(default_factory=list)
+    unloading: dict[float, UnloadingCurve] = field(default_factory=dict)
 
 
 def run_case(
@@ -116,10 +118,11 @@ def run_case(
         case = with_chosen_adhesion(case, contact, run.warn)
         deepest = deepest_indentation(case)
         require_possible(contact, deepest)
-        for warning in omissions(case) + input_warnings(contact, deepest, case.prescribed):
+        for warning in _input_warnings(case, contact, deepest):
             run.warn(warning)
         with out.tables():
             failure = _load_and_unload(case, folder, contact, out, run, go_on=errors)
+        out.put_curve(with_losses(case.pair(), case.losses(), out.curve.points, run.unloading))
         run.sticking = sticking(case, folder, out.curve, run.deepest)
         if errors and case.total_error and out.curve.points:
             budget = ErrorBudget(case, folder, out.curve.points, run.progress, run.material_parts)
@@ -139,6 +142,11 @@ def run_case(
         if failure is not None:
             raise failure
     return run.summary
+
+
+def _input_warnings(case: Case, contact: Contact, deepest: float) -> list[str]:
+    of_contact = input_warnings(contact, deepest, case.prescribed)
+    return [*omissions(case), *loss_warnings(case), *of_contact]
 
 
 def _write_results(
@@ -195,6 +203,8 @@ def _keep(impact: Impact, case: Case, out: ResultsFolder, run: _Run) -> None:
             run.maps.append(DepthMaps.of(state))
         out.add(impact.point)
         run.deepest = state
+    if (back := unloading_of(impact)) is not None:
+        run.unloading[impact.point.indentation] = back
     if impact.load.unload and state.contact_nodes:
         out.add_unloading(impact.unloading, impact.load.touch)
         run.unloading_checks.append(_check(state, impact.unloading, collision))
