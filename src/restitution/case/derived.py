@@ -7,7 +7,7 @@ import math
 from restitution.case.case import Case
 from restitution.contact.checks.resolution import predicted_radius
 from restitution.contact.contact import Contact
-from restitution.theory import JKR, FirstYield, ThorntonNing
+from restitution.theory import JKR, FirstYield
 
 
 def deepest_indentation(case: Case) -> float:
@@ -15,19 +15,7 @@ def deepest_indentation(case: Case) -> float:
 
     NaN for a periodic case without [indentation].
     """
-    last, pair = case.depths()[-1], case.pair()
-    if case.indentation is not None:
-        return last
-    if case.periodic:
-        return math.nan
-    # The yield pressure p_y of elastic bodies is infinite, but ThorntonNing needs a finite value.
-    # Use the contact modulus, a pressure that no contact reaches.
-    p_y = min(case.yielding().hardness, pair.contact_modulus)
-    smooth = ThorntonNing(pair.radius, pair.contact_modulus, p_y)
-    if case.load is not None:
-        return float(smooth.indentation(last))
-    assert pair.mass is not None  # checked by Case._check_masses
-    return float(smooth.indentation_from_velocity(last, pair.mass))
+    return case.deepest_indentation()
 
 
 def derived_quantities(case: Case, contact: Contact) -> dict[str, float | None]:

@@ -20,6 +20,7 @@ class NoAttraction(Adhesion):
     """Surfaces that only repel each other."""
 
     label = "none"
+    attracts = False
     work_of_adhesion = 0.0
 
     def describe(self, unloading: str) -> dict[str, str]:

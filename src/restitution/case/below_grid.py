@@ -1,0 +1,175 @@
+"""Which waves of the roughness the grid leaves to patches, and these patches."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from restitution.case.rulebook import Input, Key
+from restitution.contact.checks.resolution import predicted_radius
+from restitution.display import quantity
+from restitution.errors import CaseError
+from restitution.numerics import memory
+from restitution.numerics.grid import Grid
+from restitution.surfaces import Surface, refine, rms_slope
+from restitution.surfaces.split import SplitSurface, cut, long_waves
+
+if TYPE_CHECKING:
+    from restitution.case.case import Case
+
+BelowGrid = Literal["patch", "omit"]
+CELLS = 4  # default of `split`, in cells of the grid before refinement
+_EDGE = 4.0  # edge of a patch divided by the longest wave in it
+_LEAST_EDGE = 2.0  # the least such ratio, on a scan that is too small
+TILES = 2  # patches along each edge of the window from which they are cut
+_MOST_NODES = 2048  # along the edge of a patch
+_BYTES = 250.0  # per node of a window
+_MATTERS = 0.1  # rms slope of the waves below the grid, as a fraction of that of all waves
+_MOST_REFINED = 512  # nodes along the edge of a patch that is refined for its adhesion
+_REACH = 0.5  # cell divided by sqrt(r z₀) for asperities of radius r (docs/adhesion.md)
+
+BELOW_GRID = Key(
+    'what happens to waves that the grid does not carry ([two scales](two-scales.md)): `"patch"` '
+    'solves them on periodic patches, whose law the contact uses; `"omit"` leaves them out, and '
+    "the total error includes them",
+    default='`"patch"` where they matter',
+    page=Input("Waves below the grid", more=True, empty="patch where they matter"),
+)
+SPLIT = Key(
+    "wavelength at which the surface is split: shorter waves go into the patches; at least two "
+    "grid spacings, and below the contact radius",
+    default=f"{CELLS} grid spacings",
+)
+
+
+@dataclass(frozen=True)
+class Splitting:
+    """How a surface is split at `wavelength` (m): patches of `nodes`² cells of `cell` (m)."""
+
+    wavelength: float
+    cell: float
+    nodes: int
+    tiles: int = TILES
+
+    @property
+    def window(self) -> Grid:
+        """The grid that is cut into patches."""
+        n = self.tiles * self.nodes
+        return Grid((n, n), (self.cell, self.cell))
+
+
+def splitting_of(case: Case, folder: Path) -> Splitting | None:
+    """How the surface of `case` is split; None if it is not.
+
+    Raises `CaseError` if the case asks for a split that is impossible.
+    """
+    parts, grid = case.roughness, case.grid.grid()
+    choice = next((part.below_grid for part in parts if part.below_grid), None)
+    given = next((part.split for part in parts if part.split), None)
+    if grid is None or not parts or case.periodic or choice == "omit":
+        return None
+    if not case.can_split or not (choice == "patch" or _matter(case, grid, folder)):
+        return None
+    spacing = max(grid.spacing)
+    split = given or CELLS * spacing
+    cell = min(part.patch_cell(grid, folder) for part in parts)
+    if 2 * cell > split * (1 - 1e-9):
+        return None  # no waves below the split
+    if split < 2 * spacing * (1 - 1e-9):
+        raise CaseError(
+            f"roughness.split: {_nm(split)} is below two grid spacings ({_nm(2 * spacing)}), so "
+            "waves in between would be in neither the grid nor the patches; use a larger split or "
+            "a smaller grid.spacing"
+        )
+    radius = predicted_radius(case.pair(), case.deepest_indentation(), case.yielding().hardness)
+    if split > radius:
+        if choice is None and given is None:
+            return None
+        raise CaseError(
+            f"roughness.split: {_nm(split)} is above the contact radius of {_nm(radius)} at the "
+            "largest depth, so waves and contact do not separate; set grid.spacing or split to "
+            f'{_nm(radius / CELLS)} or less, or below_grid = "omit"'
+        )
+    return _sized(case, folder, split, cell)
+
+
+def _sized(case: Case, folder: Path, split: float, cell: float) -> Splitting | None:
+    from scipy.fft import next_fast_len
+
+    room = min(part.patch_room(folder) for part in case.roughness)
+    edge = min(_EDGE * split, room)
+    if edge < _LEAST_EDGE * split:
+        return None
+    nodes = math.floor(edge / cell * (1 + 1e-9))
+    if edge < room:
+        nodes = next_fast_len(math.ceil(edge / cell * (1 - 1e-9)), real=True)
+    tiles = max(1, math.floor(min(TILES, room / (nodes * cell) * (1 + 1e-9))))
+    needed = _BYTES * (tiles * nodes) ** 2
+    if nodes > _MOST_NODES or needed > memory.available():
+        raise CaseError(
+            f"roughness.split: patches of {nodes} x {nodes} nodes ({_nm(cell)} each, for waves "
+            f"below {_nm(split)}) are too large; use a smaller grid.spacing or split, leave out "
+            'short waves (roughness.shortest), or set below_grid = "omit"'
+        )
+    return Splitting(split, cell, nodes, tiles)
+
+
+def _matter(case: Case, grid: Grid, folder: Path) -> bool:
+    """Whether the case leaves the choice open and waves below the grid change its restitution."""
+    if math.isinf(case.yielding().hardness) and not case.interface.adhesive_energy:
+        return any(part.needs_patches(grid) for part in case.roughness)
+    return any(part.share_below(grid, folder) > _MATTERS for part in case.roughness)
+
+
+def split_surface(case: Case, folder: Path, surface: Surface, how: Splitting) -> SplitSurface:
+    """`surface` of `case` without short waves, and the patches that have them."""
+    patches = _patches(case.roughness, str(folder), case.grid.grid(), how)
+    if case.interface.adhesive_energy:
+        z0 = case.interface.equilibrium_separation
+        patches = tuple(_resolved(patch, z0) for patch in patches)
+    long = long_waves(surface, how.wavelength)
+    gone = ("pixel_x_m", "pixel_y_m", "shortest_carried_m", "removed_rms_m", "removed_slope")
+    told = {key: value for key, value in surface.provenance.items() if key not in gone}
+    (nx, ny), (cell, _) = patches[0].grid.nodes, patches[0].grid.spacing
+    told |= {
+        "split_m": how.wavelength,
+        "patches": f"{len(patches)} of {nx} x {ny} nodes of {_nm(cell)}",
+        "patch_rms_m": float(np.sqrt(np.mean([patch.height.var() for patch in patches]))),
+        "patch_slope": float(np.sqrt(np.mean([rms_slope(patch) ** 2 for patch in patches]))),
+    }
+    return SplitSurface(long.height, surface.grid, told, patches, how.wavelength)
+
+
+@lru_cache(maxsize=8)
+def _patches(
+    parts: Sequence[object], folder: str, grid: Grid, how: Splitting
+) -> tuple[Surface, ...]:
+    heights = [
+        part.short_waves(how.window, how.wavelength, grid, Path(folder))  # type: ignore[attr-defined]
+        for part in parts
+    ]
+    return cut(np.sum(heights, axis=0), how.window.spacing, how.nodes, how.tiles)
+
+
+@lru_cache(maxsize=32)
+def _resolved(patch: Surface, z0: float) -> Surface:
+    """`patch` on cells that resolve the adhesion of its asperities."""
+    hx, z = patch.grid.spacing[0], patch.height
+    curvature = (np.roll(z, 1, 0) + np.roll(z, -1, 0) - 2 * z) / hx**2
+    radius = 1 / max(float(curvature.std()), 1e-300)
+    factor = 1
+    while hx / factor > _REACH * math.sqrt(radius * z0) and (
+        2 * factor * patch.grid.nodes[0] <= _MOST_REFINED
+    ):
+        factor *= 2
+    return refine(patch, factor)
+
+
+def _nm(length: float) -> str:
+    return quantity(length, "m")
