@@ -221,6 +221,10 @@ class ErrorBudget:
         change = array(points, "restitution") - companions.own.at(work)
         unseen = unseen_yield(companions, waves, points)
         errors, band = grid_error(change, unseen, work, points, waves.octaves)
+        if scales := companions.scales(self._progress):
+            area = array(points, "contact_nodes") * companions.cell_area
+            by_law = scales.error(lambda curve: curve.at(work), area)
+            errors = np.hypot(errors, np.sqrt(_smoothed(by_law**2, work, _NEAR_SURFACE)))
         columns = {"discretisation_error": errors} | spread_errors(
             companions, work, self._progress, scattered=self._scattered, parts=self.parts
         )

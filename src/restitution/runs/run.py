@@ -50,6 +50,7 @@ from restitution.runs.result_warnings import (
     velocities_missed,
 )
 from restitution.runs.smooth import smooth_curve
+from restitution.runs.two_scales import solve_patches, told
 from restitution.surfaces import describe
 
 CONVENTIONS = {
@@ -113,6 +114,7 @@ def run_case(
     ):
         case = with_chosen_grids(case, folder, run.warn)
         contact = case.contact(folder)
+        solve_patches(contact, run.progress)
         case = with_chosen_adhesion(case, contact, run.warn)
         deepest = deepest_indentation(case)
         require_possible(contact, deepest)
@@ -225,6 +227,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> d
             "plasticity": contact.plasticity.label,
             **interface_of(contact).describe(case.unloading.method),
             "half_space": "free, Love cells, zero-padded FFT",
+            "below_grid": told(contact),
             **asdict(contact.grid),
             "refine": case.grid.refine,
             "yield_pressure": case.yielding().source,

@@ -137,6 +137,11 @@ class AttractionTable:
             slope[far] = -3 * p_end * ratio**3 / gap[far]
         return energy, -p, -slope
 
+    def lost_at(self, gap: Array) -> Array:
+        """Work per area dissipated by loading to each `gap` (J/m²)."""
+        at = (gap - self.pressure.first) / self.pressure.step
+        return np.interp(at, np.arange(self.lost.size), self.lost)
+
     def gap_at(self, pressure: Array) -> Array:
         """Gap (m) at which the pressure (Pa, not negative) has this value."""
         p = self.pressure

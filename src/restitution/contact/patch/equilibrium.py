@@ -10,6 +10,7 @@ gap of separation g_s; force and energy of the deepest state determine m. The en
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,9 @@ from restitution.numerics.box import NOWHERE, Box, shape_of
 from restitution.numerics.convolution.device import CPU, on_device
 from restitution.numerics.read_only import freeze
 from restitution.numerics.truncated_newton import minimise_locally
+
+if TYPE_CHECKING:
+    from restitution.contact.patch.law import PatchRepulsion
 
 _TOLERANCE, _LEAST_TOLERANCE = 10.0, 1e-8
 # A node is in contact if its pressure is at least this fraction of the largest pressure.
@@ -60,6 +64,18 @@ class PatchState(State):
         return self.real_area
 
     @property
+    def separation_indentation(self) -> float:
+        if self.least_gap is None or not np.isfinite(self.least_gap).any():
+            return super().separation_indentation
+        table = cast("PatchRepulsion", self.contact.adhesion).table
+        touched = np.isfinite(self.least_gap)
+        branch = Branch.of(table, self.least_gap[touched])
+        flattened = table.touch - branch.least - branch.length
+        opened = self.contact.gap + self.plastic_displacement
+        opened[touched] += np.maximum(flattened, 0.0)
+        return float(opened.min())
+
+    @property
     def box_touching(self) -> NDArray[np.bool_]:
         largest = float(self.box_pressure.max(initial=0.0))
         return np.asarray(self.box_pressure > _TOUCHING * largest)
@@ -67,30 +83,39 @@ class PatchState(State):
 
 @dataclass(frozen=True)
 class Branch:
-    """Unloading of the patches whose smallest gap (m) was `least`; arrays of one shape."""
+    """Unloading of the patches whose smallest gap (m) was `least`; arrays of one shape.
+
+    `pressure` (Pa), the elastic `energy` and the energy `lost` (J/m²) are those at this gap, and
+    `range` (m) the distance to the gap where the pressure of the mean patch is zero.
+    """
 
     least: Array
     pressure: Array
     energy: Array
-    length: Array
+    lost: Array
+    range: Array
 
     @classmethod
     def of(cls, table: RepulsionTable, least: Array) -> Branch:
         work, pressure, _ = table.work(least)
-        energy = work * (1 - table.of_gap(table.lost, least))
-        return cls(least, pressure, energy, table.of_gap(table.range, least))
+        lost = work * table.of_gap(table.lost, least)
+        return cls(least, pressure, work - lost, lost, table.of_gap(table.range, least))
 
     @property
     def power(self) -> Array:
         """The exponent m of the pressure."""
         energy = np.maximum(self.energy, 1e-300)
-        return np.clip(self.pressure * self.length / energy - 1, _LINEAR, _STIFFEST)
+        return np.clip(self.pressure * self.range / energy - 1, _LINEAR, _STIFFEST)
+
+    @property
+    def length(self) -> Array:
+        """Distance (m) to the gap of separation, at which all elastic energy is returned."""
+        return (self.power + 1) * self.energy / np.maximum(self.pressure, 1e-300)
 
     def at(self, gap: Array) -> tuple[Array, Array, Array]:
         """Energy (J/m²), pressure (Pa) and its derivative (Pa/m), where `gap` is above `least`."""
-        m = self.power
-        length = (m + 1) * self.energy / np.maximum(self.pressure, 1e-300)
-        left = np.maximum(1 - (gap - self.least) / np.maximum(length, 1e-300), 0.0)
+        m, length = self.power, self.length
+        left = np.clip(1 - (gap - self.least) / np.maximum(length, 1e-300), 0.0, 1.0)
         p = self.pressure * left**m
         slope = -self.pressure * m / np.maximum(length, 1e-300) * left ** (m - 1)
         return self.energy * left ** (m + 1), p, slope
@@ -112,12 +137,15 @@ class PatchNodes:
         self.lowest = np.where(finite, table.gap_at(np.where(finite, self.limit, 1.0)), -np.inf)
         self.least = np.full(base.shape, np.inf) if least is None else least
         self.branch = None if least is None else Branch.of(table, np.minimum(least, table.touch))
+        # A patch that is loaded again first returns to its deepest state.
+        self.lost = 0.0 if self.branch is None else self.branch.lost
 
     def __call__(self, u: Array) -> tuple[Array, Array, Array]:
         """Return energy (J/m²), its derivative (Pa) and second derivative (Pa/m) at `u`."""
         gap = self.base + u
         inside = np.maximum(gap, self.lowest)
         energy, p, slope = self.table.work(inside)
+        energy -= self.lost
         below = inside - gap
         energy = energy + self.limit * below if np.isfinite(self.limit).all() else energy
         slope = np.where(below > 0, 0.0, slope)

@@ -11,18 +11,23 @@ import numpy as np
 from restitution.arguments import typed
 from restitution.contact.bodies import Pair
 from restitution.contact.checks.resolution import radius_of_asperities
+from restitution.contact.cohesive.equilibrium import box_gap
 from restitution.contact.cohesive.law import COARSEST, Cohesive, CohesiveLaw
 from restitution.contact.contact import Contact
 from restitution.contact.interface import NoAttraction
-from restitution.contact.models import Plasticity
+from restitution.contact.models import Plasticity, Separation
 from restitution.contact.patch.attraction import AttractionCurve, AttractionTable
 from restitution.contact.patch.equilibrium import PatchState, solve_with_patches
 from restitution.contact.patch.repulsion import PatchCurve, RepulsionTable
 from restitution.contact.plasticity.bound import Elastic
 from restitution.contact.state import Array, State
 from restitution.numerics.read_only import freeze
-from restitution.surfaces import Surface
+from restitution.surfaces import Surface, rms_slope
 from restitution.theory import JKR
+
+# The unloading branch of patches that yield or jump is known by its energy, not by its tension.
+# This is the error of the energy, as a fraction of the dissipated energy.
+_OF_BRANCH = 0.5
 
 
 def flat(pair: Pair) -> Pair:
@@ -47,7 +52,7 @@ class PatchRepulsion(NoAttraction):
     pair: Pair | None = None
     plasticity: Plasticity = Elastic()
 
-    label = "patch"
+    label = "none"
 
     def of_contact(self, contact: Contact) -> PatchRepulsion:
         pair = flat(contact.pair)
@@ -55,19 +60,27 @@ class PatchRepulsion(NoAttraction):
             return self
         return replace(self, pair=pair, plasticity=contact.plasticity)
 
-    @cached_property
-    def curves(self) -> tuple[PatchCurve, ...]:
-        """The loading of each patch."""
+    def curve(self, patch: Surface) -> PatchCurve:
+        """The loading of one of the patches."""
         assert self.pair is not None
-        return tuple(
-            PatchCurve.of(Contact(self.pair, patch, periodic=True), self.plasticity)
-            for patch in self.patches
-        )
+        return PatchCurve.of(Contact(self.pair, patch, periodic=True), self.plasticity)
 
     @cached_property
     def table(self) -> RepulsionTable:
         """The mean of the patches."""
-        return RepulsionTable.of(self.curves)
+        curves = [self.curve(patch) for patch in self.patches]
+        return RepulsionTable.of(curves, elastic=math.isinf(self.plasticity.hardness))
+
+    def summary(self) -> dict[str, float]:
+        """Numbers of the law, by their names in `summary.json`."""
+        table = self.table
+        work = table.work(np.array([table.pressure.first]))[0][0]
+        return {
+            "touch_gap_m": table.touch,
+            "deepest_pressure_Pa": float(table.pressure.values[0]),
+            "deepest_work_J_per_m2": float(work),
+            "deepest_loss_J_per_m2": float(work * table.lost[0]),
+        }
 
     def load(
         self, contact: Contact, indentation: float, *, start: State | None, residual: float
@@ -148,20 +161,39 @@ class PatchAttraction(CohesiveLaw):
     def work_of_adhesion(self) -> float:  # type: ignore[override]
         return self.attraction.work_of_adhesion
 
-    @cached_property
-    def curves(self) -> tuple[AttractionCurve, ...]:
-        """The loading of each patch."""
-        assert self.pair is not None
-        model = self.plasticity.of_asperities(self.pair, math.inf)
-        return tuple(
-            AttractionCurve.of(Contact(self.pair, patch, model, self.attraction, periodic=True))
-            for patch in self.patches
-        )
+    def curve(self, patch: Surface) -> AttractionCurve:
+        """The loading of one of the patches."""
+        pair = self.pair
+        assert pair is not None
+        model = self.plasticity.of_asperities(pair, 0.5 * pair.contact_modulus * rms_slope(patch))
+        return AttractionCurve.of(Contact(pair, patch, model, self.attraction, periodic=True))
 
     @cached_property
     def table(self) -> AttractionTable:
         """The mean of the patches."""
-        return AttractionTable.of(self.curves)
+        return AttractionTable.of([self.curve(patch) for patch in self.patches])
+
+    def summary(self) -> dict[str, float]:
+        """Numbers of the law, by their names in `summary.json`."""
+        gap, tension = self.table.largest_tension
+        return {
+            "largest_tension_Pa": tension,
+            "largest_tension_gap_m": gap,
+            "work_of_adhesion_J_per_m2": self.table.work,
+            "equilibrium_gap_m": self.table.equilibrium,
+            "deepest_pressure_Pa": float(self.table.pressure.values[0]),
+        }
+
+    def separation_of(self, path: list[State]) -> Separation:
+        whole = super().separation_of(path)
+        start = path[0]
+        lost = float(self.table.lost_at(box_gap(start)).sum()) * start.contact.grid.cell_area
+        return replace(
+            whole,
+            unloading_work=whole.unloading_work - lost,
+            adhesive_loss=whole.adhesive_loss + lost,
+            error=math.hypot(whole.error, _OF_BRANCH * lost),
+        )
 
     @property
     def equilibrium_separation(self) -> float:  # type: ignore[override]
@@ -213,3 +245,11 @@ class PatchAttraction(CohesiveLaw):
 @lru_cache(maxsize=4)
 def _without_patches(contact: Contact) -> Contact:
     return replace(contact, adhesion=None)
+
+
+PatchLaw = PatchRepulsion | PatchAttraction
+
+
+def law_of_patches(contact: Contact) -> PatchLaw | None:
+    """The law of waves below the grid; None if `contact` has none."""
+    return contact.adhesion if isinstance(contact.adhesion, PatchLaw) else None

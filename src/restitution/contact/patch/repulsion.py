@@ -108,7 +108,7 @@ class RepulsionTable:
     range: Array
 
     @classmethod
-    def of(cls, curves: Sequence[PatchCurve]) -> RepulsionTable:
+    def of(cls, curves: Sequence[PatchCurve], *, elastic: bool = False) -> RepulsionTable:
         """The mean of `curves`, down to the largest of their smallest gaps."""
         first, last = max(c.gap[-1] for c in curves), max(c.gap[0] for c in curves)
         gap = np.linspace(first, last, _CELLS + 1)
@@ -116,7 +116,7 @@ class RepulsionTable:
         pressure = Tabulated(first, (last - first) / _CELLS, p)
         work = _work(pressure, gap)[0]
         share = np.divide(stored, work, out=np.ones_like(work), where=work > 0)
-        lost = np.clip(1 - share, 0.0, 1.0)
+        lost = np.clip(1 - share, 0.0, 0.0 if elastic else 1.0)
         lost[-1] = lost[-2]
         return cls(pressure, lost, area, np.maximum(length, 1e-6 * (last - first)))
 

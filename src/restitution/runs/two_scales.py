@@ -1,0 +1,55 @@
+"""Waves below the grid in runs: progress of their patches, and their law in words."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from restitution.contact.contact import Contact
+from restitution.contact.patch.law import law_of_patches
+from restitution.display import quantity
+from restitution.runs.log import Say, ignore
+
+_LONG = 0.05  # time (s) from which a patch counts as solved now
+
+
+def solve_patches(contact: Contact, progress: Say = ignore) -> None:
+    """Solve the patches of `contact`, and report those that were not known."""
+    law = law_of_patches(contact)
+    if law is None:
+        return
+    for number, patch in enumerate(law.patches, 1):
+        began = time.perf_counter()
+        law.curve(patch)
+        if time.perf_counter() - began > _LONG:
+            progress(f"patch {number} of {len(law.patches)}")
+
+
+def told(contact: Contact) -> dict[str, Any]:
+    """Entries of `summary.json` about waves below the grid; empty if there are none."""
+    law = law_of_patches(contact)
+    if law is None:
+        return {}
+    patch = law.patches[0].grid
+    return {
+        "split_m": law.wavelength,
+        "patches": len(law.patches),
+        "patch_nodes": list(patch.nodes),
+        "patch_spacing_m": patch.spacing[0],
+        "patch_rms_m": float(np.sqrt(np.mean([p.height.var() for p in law.patches]))),
+        **law.summary(),
+    }
+
+
+def in_words(known: Mapping[str, Any]) -> str:
+    """The entries of `told` in one sentence; empty if there are none."""
+    if not known:
+        return ""
+    nx, ny = known["patch_nodes"]
+    return (
+        f"Waves below {quantity(known['split_m'], 'm')} (Rq {quantity(known['patch_rms_m'], 'm')}) "
+        f"act by the law of {known['patches']} patches of {nx} x {ny} nodes."
+    )
