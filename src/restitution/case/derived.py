@@ -68,7 +68,7 @@ def _of_period(contact: Contact) -> dict[str, float | None]:
 
 def _adhesion(case: Case, contact: Contact) -> dict[str, float | None]:
     adhesion = contact.adhesion
-    if adhesion is None:
+    if adhesion is None or not adhesion.attracts:
         return {}
     pair, w = contact.pair, adhesion.work_of_adhesion
     smooth = JKR(pair.radius, pair.contact_modulus, w)

@@ -9,6 +9,7 @@ gap of separation g_s; force and energy of the deepest state determine m. The en
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
@@ -16,13 +17,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.contact.contact import Contact
-from restitution.contact.equilibrium import candidate_box
+from restitution.contact.equilibrium import MAX_ITERATIONS, candidate_box, operators_of
 from restitution.contact.influence import half_space
 from restitution.contact.patch.repulsion import RepulsionTable
 from restitution.contact.state import Array, State
 from restitution.errors import NotConvergedError
 from restitution.numerics.box import NOWHERE, Box, shape_of
 from restitution.numerics.convolution.device import CPU, on_device
+from restitution.numerics.quadratic.multilevel import solve_multilevel
 from restitution.numerics.read_only import freeze
 from restitution.numerics.truncated_newton import minimise_locally
 
@@ -32,6 +34,9 @@ if TYPE_CHECKING:
 _TOLERANCE, _LEAST_TOLERANCE = 10.0, 1e-8
 # A node is in contact if its pressure is at least this fraction of the largest pressure.
 _TOUCHING = 0.01
+# The first guess of a step is solved to this tolerance, at this fraction of the way of the patches
+# to their separation.
+_ROUGH, _UNLOADED = 1e-3, 0.2
 _LINEAR, _STIFFEST = 1.0, 30.0  # limits of m
 
 
@@ -149,7 +154,7 @@ class PatchNodes:
         below = inside - gap
         energy = energy + self.limit * below if np.isfinite(self.limit).all() else energy
         slope = np.where(below > 0, 0.0, slope)
-        if self.branch is not None and (back := gap > self.least).any():
+        if self.branch is not None and (back := gap >= self.least).any():
             for new, old in zip(self.branch.at(gap), (energy, p, slope), strict=True):
                 np.copyto(old, new, where=back)
         return energy, -p, -slope
@@ -216,13 +221,13 @@ def solve_with_patches(
     upper = limit[box] if isinstance(limit, np.ndarray) else limit
     base = contact.gap[box] + plastic[box] + (table.touch - indentation)
     nodes = PatchNodes(table, base, upper, None if least is None else least[box])
-    p, u = _start(before, box)
+    p = np.zeros(shape_of(box)) if before is None else _unloaded(contact, nodes)
     scale = float(np.max(table.touch - base))
     solved = minimise_locally(
         K,
         nodes,
         p=p,
-        u=K(p) if u is None else u,
+        u=K(p),
         length=scale,
         tolerance=max(_TOLERANCE * residual, _LEAST_TOLERANCE) * scale,
     )
@@ -266,10 +271,28 @@ def _approach(table: RepulsionTable, p: Array, gap: Array) -> float:
     return float(np.sum(p * (table.touch - gap))) / force if force > 0 else 0.0
 
 
-def _start(before: PatchState | None, box: Box) -> tuple[Array, Array | None]:
-    if before is None or before.box == NOWHERE:
-        return np.zeros(shape_of(box)), None
-    return before.pressure_on(box), None
+def _unloaded(contact: Contact, nodes: PatchNodes) -> Array:
+    """First guess of the pressure (Pa) after a step: that under patches which no longer deform.
+
+    Unloading patches are stiff, so Newton's method must begin where most of them touch.
+    """
+    wall = np.minimum(nodes.least, nodes.table.touch)
+    if nodes.branch is not None:
+        wall = wall + _UNLOADED * nodes.branch.length
+    overlap = np.minimum(wall, nodes.table.touch) - nodes.base
+    largest = float(overlap.max())
+    if largest <= 0:
+        return np.zeros_like(overlap)
+    with on_device(CPU):
+        minimum, _ = solve_multilevel(
+            operators_of(contact),
+            overlap,
+            math.inf,
+            tolerance=_ROUGH * largest,
+            max_iterations=MAX_ITERATIONS,
+            periodic=False,
+        )
+    return np.minimum(minimum.point, nodes.limit)
 
 
 def _outside(table: RepulsionTable, least: Array, box: Box) -> float:
