@@ -18,6 +18,7 @@ from restitution.errors import CaseError
 from restitution.numerics import memory
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface, refine, rms_slope
+from restitution.surfaces.refine import divided
 from restitution.surfaces.split import SplitSurface, cut, long_waves
 
 if TYPE_CHECKING:
@@ -69,15 +70,52 @@ def splitting_of(case: Case, folder: Path) -> Splitting | None:
 
     Raises `CaseError` if the case asks for a split that is impossible.
     """
+    wanted = _wanted(case, folder)
+    if wanted is None:
+        return None
+    split, cell = wanted
+    radius = _contact_radius(case)
+    if split <= radius:
+        return _sized(case, folder, split, cell)
+    if _choice(case) is None and _given(case) is None:
+        return None
+    raise CaseError(
+        f"roughness.split: {_nm(split)} is above the contact radius of {_nm(radius)} at the "
+        "largest depth, so waves and contact do not separate; set grid.spacing or split to "
+        f'{_nm(radius / CELLS)} or less, or below_grid = "omit"'
+    )
+
+
+def notice_of(case: Case, folder: Path) -> str | None:
+    """One line if waves below the grid are left out, or if none are left to patches."""
+    wanted = _wanted(case, folder)
+    if wanted is None:
+        if _choice(case) != "patch":
+            return None
+        return "roughness.below_grid: no waves are below the grid, so nothing is split"
+    split, radius = wanted[0], _contact_radius(case)
+    if split <= radius:
+        return None
+    return (
+        f"waves below the grid are left out, because patches of waves up to {_nm(split)} would not "
+        f"be small beside the contact radius of {_nm(radius)} at the largest depth; set "
+        f"grid.spacing to {_nm(radius / CELLS)} or less"
+    )
+
+
+def _wanted(case: Case, folder: Path) -> tuple[float, float] | None:
+    """Wavelength of the split and cell of the patches (m), if waves go into patches."""
     parts, grid = case.roughness, case.grid.grid()
-    choice = next((part.below_grid for part in parts if part.below_grid), None)
-    given = next((part.split for part in parts if part.split), None)
-    if grid is None or not parts or case.periodic or choice == "omit":
+    choice = _choice(case)
+    if grid is None or not parts or case.periodic or choice == "omit" or not case.can_split:
         return None
-    if not case.can_split or not (choice == "patch" or _matter(case, grid, folder)):
+    fine = divided(grid, case.grid.factor)
+    if not (choice == "patch" or _matter(case, grid, fine, folder)):
         return None
-    spacing = max(grid.spacing)
-    split = given or CELLS * spacing
+    # A finer grid carries more waves of a scan, but no more waves of a generated surface.
+    added = any(part.needs_patches(grid) for part in parts)
+    spacing = max(grid.spacing if added else fine.spacing)
+    split = _given(case) or max(CELLS * max(fine.spacing), 2 * spacing)
     cell = min(part.patch_cell(grid, folder) for part in parts)
     if 2 * cell > split * (1 - 1e-9):
         return None  # no waves below the split
@@ -87,16 +125,19 @@ def splitting_of(case: Case, folder: Path) -> Splitting | None:
             "waves in between would be in neither the grid nor the patches; use a larger split or "
             "a smaller grid.spacing"
         )
-    radius = predicted_radius(case.pair(), case.deepest_indentation(), case.yielding().hardness)
-    if split > radius:
-        if choice is None and given is None:
-            return None
-        raise CaseError(
-            f"roughness.split: {_nm(split)} is above the contact radius of {_nm(radius)} at the "
-            "largest depth, so waves and contact do not separate; set grid.spacing or split to "
-            f'{_nm(radius / CELLS)} or less, or below_grid = "omit"'
-        )
-    return _sized(case, folder, split, cell)
+    return split, cell
+
+
+def _choice(case: Case) -> BelowGrid | None:
+    return next((part.below_grid for part in case.roughness if part.below_grid), None)
+
+
+def _given(case: Case) -> float | None:
+    return next((part.split for part in case.roughness if part.split), None)
+
+
+def _contact_radius(case: Case) -> float:
+    return predicted_radius(case.pair(), case.deepest_indentation(), case.yielding().hardness)
 
 
 def _sized(case: Case, folder: Path, split: float, cell: float) -> Splitting | None:
@@ -120,11 +161,14 @@ def _sized(case: Case, folder: Path, split: float, cell: float) -> Splitting | N
     return Splitting(split, cell, nodes, tiles)
 
 
-def _matter(case: Case, grid: Grid, folder: Path) -> bool:
+def _matter(case: Case, grid: Grid, fine: Grid, folder: Path) -> bool:
     """Whether the case leaves the choice open and waves below the grid change its restitution."""
     if math.isinf(case.yielding().hardness) and not case.interface.adhesive_energy:
         return any(part.needs_patches(grid) for part in case.roughness)
-    return any(part.share_below(grid, folder) > _MATTERS for part in case.roughness)
+    return any(
+        part.needs_patches(grid) or part.share_below(fine, folder) > _MATTERS
+        for part in case.roughness
+    )
 
 
 def split_surface(case: Case, folder: Path, surface: Surface, how: Splitting) -> SplitSurface:

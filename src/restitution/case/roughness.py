@@ -233,8 +233,8 @@ class GeneratedRoughness(Table):
         return self._normal and shortest < 2 * max(grid.spacing) * (1 - 1e-9)
 
     def share_below(self, grid: Grid, folder: Path) -> float:
-        """Whether waves are below the grid: 1, or 0."""
-        return float(self.needs_patches(grid))
+        """0: `needs_patches` says whether waves are below the grid."""
+        return 0.0
 
     def patch_cell(self, grid: Grid, folder: Path) -> float:
         """Cell (m) that resolves the shortest wave in a patch."""

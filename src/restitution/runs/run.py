@@ -9,6 +9,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
+from restitution.case.below_grid import notice_of
 from restitution.case.case import Case
 from restitution.case.derived import deepest_indentation, derived_quantities
 from restitution.case.omissions import omissions
@@ -114,6 +115,8 @@ def run_case(
     ):
         case = with_chosen_grids(case, folder, run.warn)
         contact = case.contact(folder)
+        if (notice := notice_of(case, folder)) is not None:
+            run.warn(notice)
         solve_patches(contact, run.progress)
         case = with_chosen_adhesion(case, contact, run.warn)
         deepest = deepest_indentation(case)

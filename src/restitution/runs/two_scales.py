@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from restitution.contact.contact import Contact
-from restitution.contact.patch.law import law_of_patches
-from restitution.display import quantity
+from restitution.contact.patch.law import PatchLaw, law_of_patches
+from restitution.display import duration, quantity
 from restitution.runs.log import Say, ignore
 
 _LONG = 0.05  # time (s) from which a patch counts as solved now
@@ -44,12 +43,11 @@ def told(contact: Contact) -> dict[str, Any]:
     }
 
 
-def in_words(known: Mapping[str, Any]) -> str:
-    """The entries of `told` in one sentence; empty if there are none."""
-    if not known:
-        return ""
-    nx, ny = known["patch_nodes"]
+def cost_in_words(law: PatchLaw) -> str:
+    """What is split, and the time that the patches take."""
+    nx, ny = law.patches[0].grid.nodes
+    seconds = law.seconds_per_node * nx * ny * len(law.patches)
     return (
-        f"Waves below {quantity(known['split_m'], 'm')} (Rq {quantity(known['patch_rms_m'], 'm')}) "
-        f"act by the law of {known['patches']} patches of {nx} x {ny} nodes."
+        f"Waves below {quantity(law.wavelength, 'm')} are computed on {len(law.patches)} periodic "
+        f"patches of {nx} x {ny} nodes, in about {duration(seconds)} the first time."
     )
