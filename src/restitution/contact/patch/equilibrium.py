@@ -175,7 +175,11 @@ class PatchNodes:
         stored = work * (1 - share)
         area = np.where(gap < table.touch, table.of_gap(table.area, gap), 0.0)
         if self.branch is not None:
-            np.copyto(stored, self.branch.at(gap)[0], where=gap > self.least)
+            back = gap > self.least
+            energy, p, _ = self.branch.at(gap)
+            np.copyto(stored, energy, where=back)
+            left = p / np.maximum(self.branch.pressure, 1e-300)
+            np.copyto(area, table.of_gap(table.area, least) * left, where=back)
         return stored, work * share, area
 
 
@@ -267,8 +271,8 @@ def solve_with_patches(
 
 
 def _approach(table: RepulsionTable, p: Array, gap: Array) -> float:
-    force = float(p.sum())
-    return float(np.sum(p * (table.touch - gap))) / force if force > 0 else 0.0
+    force, closed = float(p.sum()), table.touch - np.clip(gap, table.pressure.first, table.touch)
+    return float(np.sum(p * closed)) / force if force > 0 else 0.0
 
 
 def _unloaded(contact: Contact, nodes: PatchNodes) -> Array:
