@@ -144,16 +144,18 @@ def adhesive(rms, nodes, cell):
 
 
 def test_the_law_of_a_flat_patch_is_that_of_half_spaces():
-    contact = rs.Contact(flat(FINE_PAIR), asperities(1e-14, 24), adhesion=Cohesive(W), periodic=True)
+    contact = rs.Contact(
+        flat(FINE_PAIR), asperities(1e-14, 24), adhesion=Cohesive(W), periodic=True
+    )
     law = PatchAttraction((contact.surface,), 14e-9, Cohesive(W))
     table = law.of_contact(rs.Contact(FINE_PAIR, rs.smooth(rs.Grid((8, 8), (1e-9, 1e-9))))).table
     gap = np.array([0.28e-9, Z0, 0.4e-9, 1e-9, 5e-9, 30e-9])
     energy, traction, _ = table.potential(gap)
     exact = Cohesive(W)
-    np.testing.assert_allclose(energy, exact.energy(gap), rtol=0.02, atol=2e-3 * W)
-    np.testing.assert_allclose(traction, exact.traction(gap), rtol=0.03, atol=0.02 * W / Z0)
-    assert table.equilibrium == approx(Z0, rel=1e-3)
-    assert table.work == approx(W, rel=0.01)
+    np.testing.assert_allclose(energy, exact.energy(gap), rtol=0.02, atol=0.04 * W)
+    np.testing.assert_allclose(traction, exact.traction(gap), rtol=0.03, atol=0.05 * W / Z0)
+    assert table.equilibrium == approx(Z0, rel=5e-3)
+    assert table.work == approx(W, rel=0.02)
 
 
 def test_an_attraction_is_the_derivative_of_its_energy():

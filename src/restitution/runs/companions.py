@@ -44,6 +44,9 @@ _TOLERANCE = 0.005  # allowed error of COR due to the steps of adhesive unloadin
 # loading work at other depths.
 _SHALLOWER, _DEEPER = 0.5, 1.3
 
+# Error of a bound that grows if patches have one of their own, beside that of a fine grid.
+_OF_GROWTH = 0.08
+
 
 def curve_of(
     contact: Contact,
@@ -102,12 +105,13 @@ class ScaleCurves:
     """Curves that show the errors of a law of patches.
 
     `single` has the curve of the law of each patch, `doubled` that of a split at twice the
-    wavelength. `edge` is that of a patch (m).
+    wavelength, `weaker` that of weaker bodies if their bound grows. `edge` is that of a patch (m).
     """
 
     own: WorkCurve
     single: tuple[WorkCurve, ...]
     doubled: WorkCurve
+    weaker: WorkCurve | None
     edge: float
 
     @classmethod
@@ -121,15 +125,21 @@ class ScaleCurves:
             single.append(companions.curve(replace(companions.coarse, adhesion=alone)))
         progress("error: split at twice the wavelength")
         doubled = companions.curve(companions.doubled(law, how))
-        return cls(companions.own, tuple(single), doubled, how.nodes * how.cell)
+        coarse, weaker = companions.coarse, None
+        if coarse.plasticity.grows:
+            weak = replace(coarse, plasticity=coarse.plasticity.scaled(1 - _OF_GROWTH))
+            weaker = companions.curve(weak)
+        return cls(companions.own, tuple(single), doubled, weaker, how.nodes * how.cell)
 
     def error(self, quantity_of: Callable[[WorkCurve], Array], area: Array | float) -> Array:
-        """Error of a quantity due to the scatter of patches, and to the choice of the split.
+        """Error of a quantity due to the scatter of patches, the split, and the bound.
 
         The waves in the contact are one sample as large as its nominal `area` (m²).
         """
         own = quantity_of(self.own)
         split = np.abs(quantity_of(self.doubled) - own)
+        if self.weaker is not None:
+            split = np.hypot(split, quantity_of(self.weaker) - own)
         if len(self.single) < 2:
             return np.asarray(split)
         deviation = np.std([quantity_of(curve) for curve in self.single], axis=0, ddof=1)

@@ -51,7 +51,7 @@ from restitution.runs.result_warnings import (
     velocities_missed,
 )
 from restitution.runs.smooth import smooth_curve
-from restitution.runs.two_scales import solve_patches, told
+from restitution.runs.two_scales import patch_curve, solve_patches, told
 from restitution.surfaces import describe
 
 CONVENTIONS = {
@@ -154,6 +154,7 @@ def _write_results(
     dataset = results_dataset(out, deepest)
     with suppress(RestitutionError):  # if the smooth curve fails, the results omit it
         dataset = dataset.assign(smooth_curve(deepest.contact, out.curve.points))
+    dataset = dataset.assign(patch_curve(deepest.contact))
     dataset.attrs = status_attributes(summary) | case_attributes(summary, text)
     points = out.curve.points
     write_maps(out.path, run.maps[: len(points)], points, _MAPS_ALONG)

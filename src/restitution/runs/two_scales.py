@@ -12,6 +12,7 @@ from restitution.contact.patch.law import PatchLaw, law_of_patches
 from restitution.display import duration, quantity
 from restitution.runs.log import Say, ignore
 
+_DRAWN = 400  # points of a drawn law
 _LONG = 0.05  # time (s) from which a patch counts as solved now
 
 
@@ -40,6 +41,22 @@ def told(contact: Contact) -> dict[str, Any]:
         "patch_spacing_m": patch.spacing[0],
         "patch_rms_m": float(np.sqrt(np.mean([p.height.var() for p in law.patches]))),
         **law.summary(),
+    }
+
+
+def patch_curve(contact: Contact) -> dict[str, Any]:
+    """Make the variables of `results.nc` for the law of patches; empty without patches."""
+    law = law_of_patches(contact)
+    if law is None:
+        return {}
+    gap = law.table.drawn(_DRAWN)
+    values = {
+        "gap": ("m", "distance of the mean planes of the patches before deformation", gap),
+        "pressure": ("Pa", "nominal pressure of the patches during loading", law.table.at(gap)),
+    }
+    return {
+        f"patch_{name}": ("patch", of, {"units": unit, "long_name": words})
+        for name, (unit, words, of) in values.items()
     }
 
 

@@ -21,6 +21,7 @@ from restitution.numerics.tabulated import Tabulated
 # A patch is loaded up to this fraction of E*, or of the yield pressure if that is smaller, or until
 # this fraction of it is in contact.
 _HIGHEST, _OF_HARDNESS, _CLOSED = 0.1, 0.97, 0.95
+_ACCURACY = 4e-5  # of the steps: finer than for a force, because the table is interpolated
 _CELLS = 4096  # of the table
 _FAR = 25.0  # gap at the end of the table beyond the highest asperity, in units of z₀
 
@@ -30,13 +31,14 @@ class AttractionCurve:
     """The loading of a patch; arrays against decreasing gap.
 
     `gap` (m) is the distance of the mean planes before deformation, `pressure` (Pa) the nominal
-    pressure (tension is negative), `lost` the work per area dissipated by yielding and by jumps so
-    far (J/m²), and `jumps` their number.
+    pressure (tension is negative), `work` that of loading (J/m², 0 at infinity), `lost` the work
+    per area that yielding and jumps have dissipated (J/m²), and `jumps` their number.
     """
 
     contact: Contact
     gap: Array
     pressure: Array
+    work: Array
     lost: Array
     jumps: int
 
@@ -49,10 +51,12 @@ class AttractionCurve:
 
     def at(self, gap: Array) -> tuple[Array, Array]:
         """Pressure and dissipated work at each `gap` (m); rigid bodies beyond the first state."""
-        from scipy.interpolate import PchipInterpolator
+        from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
         inside = np.clip(gap, self.gap[-1], self.gap[0])
-        p = PchipInterpolator(self.gap[::-1], self.pressure[::-1])(inside)
+        # The energies are more accurate than an integral of the pressures between the states.
+        work = CubicHermiteSpline(self.gap[::-1], self.work[::-1], -self.pressure[::-1])
+        p = -work.derivative()(inside)
         lost = PchipInterpolator(self.gap[::-1], self.lost[::-1])(inside)
         far = gap > self.gap[0]
         p[far] = self.rigid(gap[far])
@@ -70,9 +74,10 @@ def _columns(contact: Contact) -> dict[str, Array]:
     rows, jumps = [], 0
     for state in _loading(contact):
         lost = state.plastic_work + state.adhesive_loss
-        rows.append((touch - state.indentation, state.force / area, lost / area))
+        work = state.potential_energy + lost
+        rows.append((touch - state.indentation, state.force / area, work / area, lost / area))
         jumps = state.jumps
-    columns = dict(zip(("gap", "pressure", "lost"), np.array(rows).T, strict=True))
+    columns = dict(zip(("gap", "pressure", "work", "lost"), np.array(rows).T, strict=True))
     return columns | {"jumps": np.array([float(jumps)])}
 
 
@@ -82,7 +87,7 @@ def _loading(contact: Contact) -> Iterator[CohesiveState]:
     begin = load_cohesive(contact, -np.inf, start=None, residual=RESIDUAL)
     yield begin
     try:
-        for state in follow(begin, np.inf, residual=RESIDUAL):
+        for state in follow(begin, np.inf, residual=RESIDUAL, accuracy=_ACCURACY):
             yield state
             if state.nominal_pressure > top or state.relative_area > _CLOSED:
                 return
@@ -136,6 +141,16 @@ class AttractionTable:
             p[far] = p_end * ratio**3
             slope[far] = -3 * p_end * ratio**3 / gap[far]
         return energy, -p, -slope
+
+    def drawn(self, count: int) -> Array:
+        """`count` gaps (m) that show the attraction, and as much repulsion."""
+        gap, tension = self.largest_tension
+        least = float(self.gap_at(np.asarray(tension)))
+        return np.linspace(least, gap + 4 * (gap - least), count)
+
+    def at(self, gap: Array) -> Array:
+        """Pressure (Pa) at each `gap` (m)."""
+        return -self.potential(gap)[1]
 
     def lost_at(self, gap: Array) -> Array:
         """Work per area dissipated by loading to each `gap` (J/m²)."""

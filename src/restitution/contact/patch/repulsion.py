@@ -129,6 +129,14 @@ class RepulsionTable:
         """Work of loading (J/m²), pressure (Pa) and its derivative (Pa/m) at each `gap` (m)."""
         return _work(self.pressure, gap)
 
+    def drawn(self, count: int) -> Array:
+        """`count` gaps (m) that show the law."""
+        return np.linspace(self.pressure.first, self.touch, count)
+
+    def at(self, gap: Array) -> Array:
+        """Pressure (Pa) at each `gap` (m)."""
+        return self.work(gap)[1]
+
     def of_gap(self, values: Array, gap: Array) -> Array:
         """One of the arrays of the table, at each `gap` (m)."""
         at = (np.asarray(gap) - self.pressure.first) / self.pressure.step

@@ -23,6 +23,7 @@ from restitution.surfaces import Surface
 
 Columns = Mapping[str, Array]
 
+_FORMAT = 2  # number of the form of the columns
 _MOST = 400  # files
 _IN_MEMORY = 256
 _known: dict[str, Columns] = {}
@@ -57,7 +58,7 @@ def is_kept(patch: Surface, models: object) -> bool:
 
 
 def _key(patch: Surface, models: str) -> str:
-    told = f"{version('restitution')} {patch.grid.spacing} {models} {_heights(patch)}"
+    told = f"{version('restitution')} {_FORMAT} {patch.grid.spacing} {models} {_heights(patch)}"
     return hashlib.sha256(told.encode()).hexdigest()
 
 
