@@ -117,8 +117,8 @@ def _wanted(case: Case, folder: Path) -> tuple[float, float] | None:
     spacing = max(grid.spacing if added else fine.spacing)
     split = _given(case) or max(CELLS * max(fine.spacing), 2 * spacing)
     cell = min(part.patch_cell(grid, folder) for part in parts)
-    if 2 * cell > split * (1 - 1e-9):
-        return None  # no waves below the split
+    if min(part.shortest_wave(grid, folder) for part in parts) > split * (1 - 1e-9):
+        return None
     if split < 2 * spacing * (1 - 1e-9):
         raise CaseError(
             f"roughness.split: {_nm(split)} is below two grid spacings ({_nm(2 * spacing)}), so "
@@ -173,7 +173,8 @@ def _matter(case: Case, grid: Grid, fine: Grid, folder: Path) -> bool:
 
 def split_surface(case: Case, folder: Path, surface: Surface, how: Splitting) -> SplitSurface:
     """`surface` of `case` without short waves, and the patches that have them."""
-    patches = _patches(case.roughness, str(folder), case.grid.grid(), how)
+    kin = tuple(part.of_patches() for part in case.roughness)
+    patches = _patches(kin, str(folder), case.grid.grid(), how)
     if case.interface.adhesive_energy:
         z0 = case.interface.equilibrium_separation
         patches = tuple(_resolved(patch, z0) for patch in patches)

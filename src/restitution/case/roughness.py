@@ -236,9 +236,17 @@ class GeneratedRoughness(Table):
         """0: `needs_patches` says whether waves are below the grid."""
         return 0.0
 
+    def shortest_wave(self, grid: Grid, folder: Path) -> float:
+        """Length (m) of the shortest wave of the surface."""
+        return self.shortest or 2 * max(grid.spacing)
+
     def patch_cell(self, grid: Grid, folder: Path) -> float:
         """Cell (m) that resolves the shortest wave in a patch."""
-        return (self.shortest or 2 * max(grid.spacing)) / PER_WAVE
+        return self.shortest_wave(grid, folder) / PER_WAVE
+
+    def of_patches(self) -> Self:
+        """The table whose patches all surfaces of this kind share."""
+        return self.model_copy(update={"seed": PATCH_SEED, "realisations": 1})
 
     def patch_room(self, folder: Path) -> float:
         """Largest edge (m) of a window with short waves."""
@@ -246,7 +254,7 @@ class GeneratedRoughness(Table):
 
     def short_waves(self, window: Grid, wavelength: float, grid: Grid, folder: Path) -> Array:
         """Heights (m) of the waves shorter than `wavelength` (m) on `window`."""
-        return self._bands(grid).short_waves(window, wavelength, self.rms, PATCH_SEED)
+        return self._bands(grid).short_waves(window, wavelength, self.rms, self.seed)
 
 
 class CropTable(Table):
@@ -392,9 +400,18 @@ class MeasuredRoughness(Table):
             return 0.0
         return share_below(scan, grid.spacing)
 
+    def shortest_wave(self, grid: Grid, folder: Path) -> float:
+        """Length (m) of the shortest wave of the scan."""
+        return 2 * self.patch_cell(grid, folder)
+
     def patch_cell(self, grid: Grid, folder: Path) -> float:
         """The smaller edge (m) of a pixel."""
         return min(self._unmoved(folder).grid.spacing)
+
+    def of_patches(self) -> Self:
+        """The table whose patches all surfaces of this kind share."""
+        seed = None if self.seed is None else PATCH_SEED
+        return self.model_copy(update={"seed": seed, "place": 0, "realisations": 1})
 
     def patch_room(self, folder: Path) -> float:
         """Edge (m) of the largest square window with short waves."""
@@ -402,9 +419,7 @@ class MeasuredRoughness(Table):
 
     def short_waves(self, window: Grid, wavelength: float, grid: Grid, folder: Path) -> Array:
         """Heights (m) of the waves shorter than `wavelength` (m) on `window`."""
-        seed = None if self.seed is None else PATCH_SEED
-        part = self.model_copy(update={"seed": seed, "place": 0})
-        whole = part.surface(window, folder)
+        whole = self.surface(window, folder)
         return whole.height - long_waves(whole, wavelength).height
 
     def _unmoved(self, folder: Path) -> Surface:
