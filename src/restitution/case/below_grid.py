@@ -7,11 +7,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import Any, Literal, Protocol
 
 import numpy as np
 
+from restitution.case.interface import InterfaceTable, Yielding
 from restitution.case.rulebook import Input, Key
+from restitution.case.schema import GridTable
+from restitution.contact.bodies import Pair
 from restitution.contact.checks.resolution import predicted_radius
 from restitution.display import quantity
 from restitution.errors import CaseError
@@ -20,9 +23,6 @@ from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface, refine, rms_slope
 from restitution.surfaces.refine import divided
 from restitution.surfaces.split import SplitSurface, cut, long_waves
-
-if TYPE_CHECKING:
-    from restitution.case.case import Case
 
 BelowGrid = Literal["patch", "omit"]
 CELLS = 4  # default of `split`, in cells of the grid before refinement
@@ -49,6 +49,39 @@ SPLIT = Key(
 )
 
 
+class SplitCase(Protocol):
+    """What of a `Case` decides how its surface is split."""
+
+    @property
+    def roughness(self) -> tuple[Any, ...]:
+        """The tables of the roughness."""
+
+    @property
+    def grid(self) -> GridTable:
+        """The table of the grid."""
+
+    @property
+    def interface(self) -> InterfaceTable:
+        """The table of the interface."""
+
+    @property
+    def periodic(self) -> bool:
+        """Whether the contact is periodic."""
+
+    @property
+    def can_split(self) -> bool:
+        """Whether the models of the case are defined with patches."""
+
+    def pair(self) -> Pair:
+        """The bodies."""
+
+    def yielding(self) -> Yielding:
+        """How they yield."""
+
+    def deepest_indentation(self) -> float:
+        """The deepest indentation (m)."""
+
+
 @dataclass(frozen=True)
 class Splitting:
     """How a surface is split at `wavelength` (m): patches of `nodes`² cells of `cell` (m)."""
@@ -65,7 +98,7 @@ class Splitting:
         return Grid((n, n), (self.cell, self.cell))
 
 
-def splitting_of(case: Case, folder: Path) -> Splitting | None:
+def splitting_of(case: SplitCase, folder: Path) -> Splitting | None:
     """How the surface of `case` is split; None if it is not.
 
     Raises `CaseError` if the case asks for a split that is impossible.
@@ -86,7 +119,7 @@ def splitting_of(case: Case, folder: Path) -> Splitting | None:
     )
 
 
-def notice_of(case: Case, folder: Path) -> str | None:
+def notice_of(case: SplitCase, folder: Path) -> str | None:
     """One line if waves below the grid are left out, or if none are left to patches."""
     wanted = _wanted(case, folder)
     if wanted is None:
@@ -103,7 +136,7 @@ def notice_of(case: Case, folder: Path) -> str | None:
     )
 
 
-def _wanted(case: Case, folder: Path) -> tuple[float, float] | None:
+def _wanted(case: SplitCase, folder: Path) -> tuple[float, float] | None:
     """Wavelength of the split and cell of the patches (m), if waves go into patches."""
     parts, grid = case.roughness, case.grid.grid()
     choice = _choice(case)
@@ -128,19 +161,19 @@ def _wanted(case: Case, folder: Path) -> tuple[float, float] | None:
     return split, cell
 
 
-def _choice(case: Case) -> BelowGrid | None:
+def _choice(case: SplitCase) -> BelowGrid | None:
     return next((part.below_grid for part in case.roughness if part.below_grid), None)
 
 
-def _given(case: Case) -> float | None:
+def _given(case: SplitCase) -> float | None:
     return next((part.split for part in case.roughness if part.split), None)
 
 
-def _contact_radius(case: Case) -> float:
+def _contact_radius(case: SplitCase) -> float:
     return predicted_radius(case.pair(), case.deepest_indentation(), case.yielding().hardness)
 
 
-def _sized(case: Case, folder: Path, split: float, cell: float) -> Splitting | None:
+def _sized(case: SplitCase, folder: Path, split: float, cell: float) -> Splitting | None:
     from scipy.fft import next_fast_len
 
     room = min(part.patch_room(folder) for part in case.roughness)
@@ -161,7 +194,7 @@ def _sized(case: Case, folder: Path, split: float, cell: float) -> Splitting | N
     return Splitting(split, cell, nodes, tiles)
 
 
-def _matter(case: Case, grid: Grid, fine: Grid, folder: Path) -> bool:
+def _matter(case: SplitCase, grid: Grid, fine: Grid, folder: Path) -> bool:
     """Whether the case leaves the choice open and waves below the grid change its restitution."""
     if math.isinf(case.yielding().hardness) and not case.interface.adhesive_energy:
         return any(part.needs_patches(grid) for part in case.roughness)
@@ -171,7 +204,7 @@ def _matter(case: Case, grid: Grid, fine: Grid, folder: Path) -> bool:
     )
 
 
-def split_surface(case: Case, folder: Path, surface: Surface, how: Splitting) -> SplitSurface:
+def split_surface(case: SplitCase, folder: Path, surface: Surface, how: Splitting) -> SplitSurface:
     """`surface` of `case` without short waves, and the patches that have them."""
     kin = tuple(part.of_patches() for part in case.roughness)
     patches = _patches(kin, str(folder), case.grid.grid(), how)
@@ -192,13 +225,8 @@ def split_surface(case: Case, folder: Path, surface: Surface, how: Splitting) ->
 
 
 @lru_cache(maxsize=8)
-def _patches(
-    parts: Sequence[object], folder: str, grid: Grid, how: Splitting
-) -> tuple[Surface, ...]:
-    heights = [
-        part.short_waves(how.window, how.wavelength, grid, Path(folder))  # type: ignore[attr-defined]
-        for part in parts
-    ]
+def _patches(parts: Sequence[Any], folder: str, grid: Grid, how: Splitting) -> tuple[Surface, ...]:
+    heights = [part.short_waves(how.window, how.wavelength, grid, Path(folder)) for part in parts]
     return cut(np.sum(heights, axis=0), how.window.spacing, how.nodes, how.tiles)
 
 
