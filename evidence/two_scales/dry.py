@@ -76,7 +76,7 @@ def draw(seed: int, scans: Path, folder: Path) -> tuple[str, str, float]:
             nodes *= 2
             more += f'extend = "twin"\nseed = {rng.integers(10**6)}\n'
     spacing = edge / (256 if kind != "self-affine" else 512) * FINER
-    split, half = 4 * spacing, 0.5 * nodes * spacing
+    split, half = 2 * spacing, 0.5 * nodes * spacing
     R_star = (0.35 * half) ** 2 / (rms * rng.uniform(1, 4))
     hard = E_star * 10 ** rng.uniform(-2.2, -1.5)
     bound = "constant" if rng.random() < 0.5 else "growing"
@@ -85,7 +85,7 @@ def draw(seed: int, scans: Path, folder: Path) -> tuple[str, str, float]:
         if bound == "constant"
         else f'yield_strength = "{hard / 2.8:.6g} Pa"'
     )
-    a = np.geomspace(1.2 * split, max(0.35 * half, 1.3 * split), 3)
+    a = np.geomspace(2 * split, max(0.35 * half, 3 * split), 3)
     mass = 4 / 3 * math.pi * R_star**3 * 5000  # a sphere on a wall
     work = 8 / 15 * E_star * a**5 / R_star**2
     speeds = ", ".join(f'"{v:.6g} m/s"' for v in np.sqrt(2 * work / mass))

@@ -46,7 +46,7 @@ def test_waves_below_two_cells_go_into_patches(tmp_path):
     contact = case().contact(tmp_path)
     law, surface = contact.adhesion, contact.surface
     assert isinstance(law, PatchRepulsion)
-    assert law.wavelength == approx(2e-6)
+    assert law.wavelength == approx(1e-6)
     assert len(law.patches) == 4
     assert law.patches[0].grid.size[0] >= 8e-6
     whole = np.hypot(surface.height.std(), surface.provenance["patch_rms_m"])
@@ -77,7 +77,8 @@ def test_a_grid_that_carries_all_waves_is_not_split(tmp_path):
 def test_a_split_of_its_own(tmp_path):
     law = case(more='split = "3 um"').contact(tmp_path).adhesion
     assert law.wavelength == approx(3e-6)
-    assert case(shortest="1.5 um", more='below_grid = "patch"').contact(tmp_path).adhesion
+    asked = case(shortest="1.5 um", more='below_grid = "patch"\nsplit = "2 um"')
+    assert asked.contact(tmp_path).adhesion.wavelength == approx(2e-6)
 
 
 @pytest.mark.parametrize(

@@ -25,8 +25,8 @@ from restitution.surfaces.refine import divided
 from restitution.surfaces.split import SplitSurface, cut, long_waves
 
 BelowGrid = Literal["patch", "omit"]
-CELLS = 4  # default of `split`, in cells of the grid before refinement
-_EDGE = 4.0  # edge of a patch divided by the longest wave in it
+CELLS = 2  # default of `split`, in cells of the grid
+_EDGE = 8.0  # edge of a patch divided by the longest wave in it
 _LEAST_EDGE = 2.0  # the least such ratio, on a scan that is too small
 TILES = 2  # patches along each edge of the window from which they are cut
 _MOST_NODES = 2048  # along the edge of a patch

@@ -223,9 +223,9 @@ class GeneratedRoughness(Table):
         return (self.skewness, self.kurtosis) == (0.0, 3.0)
 
     def _bands(self, grid: Grid) -> Bands:
-        waves = {name: getattr(self, name) for name in Waves.__annotations__}
+        waves: Any = {name: getattr(self, name) for name in Waves.__annotations__}
         shortest = self.shortest or 2 * max(grid.spacing)
-        return Bands(spectrum_of_kind(self.kind, Waves(**waves)), grid, shortest)
+        return Bands(spectrum_of_kind(self.kind, waves), grid, shortest)
 
     def needs_patches(self, grid: Grid) -> bool:
         """Whether `shortest` is a wave that `grid` cannot represent."""

@@ -104,13 +104,12 @@ def half_interval(surfaces: int) -> float:
 class ScaleCurves:
     """Curves that show the errors of a law of patches.
 
-    `single` has the curve of the law of each patch, `doubled` that of a split at twice the
-    wavelength, `weaker` that of weaker bodies if their bound grows. `edge` is that of a patch (m).
+    `single` has the curve of the law of each patch, and `weaker` that of weaker bodies if their
+    bound grows. `edge` is that of a patch (m).
     """
 
     own: WorkCurve
     single: tuple[WorkCurve, ...]
-    doubled: WorkCurve
     weaker: WorkCurve | None
     edge: float
 
@@ -118,34 +117,31 @@ class ScaleCurves:
     def of(
         cls, companions: Companions, law: PatchLaw, how: Splitting, progress: Say
     ) -> ScaleCurves:
-        single = []
+        single, coarse, weaker = [], companions.coarse, None
         for number, patch in enumerate(law.patches, 1):
             progress(f"error: patch {number} of {len(law.patches)}")
             alone = replace(law, patches=(patch,))
-            single.append(companions.curve(replace(companions.coarse, adhesion=alone)))
-        progress("error: split at twice the wavelength")
-        doubled = companions.curve(companions.doubled(law, how))
-        coarse, weaker = companions.coarse, None
+            single.append(companions.curve(replace(coarse, adhesion=alone)))
         if coarse.plasticity.grows:
             weak = replace(coarse, plasticity=coarse.plasticity.scaled(1 - _OF_GROWTH))
             weaker = companions.curve(weak)
-        return cls(companions.own, tuple(single), doubled, weaker, how.nodes * how.cell)
+        return cls(companions.own, tuple(single), weaker, how.nodes * how.cell)
 
     def error(self, quantity_of: Callable[[WorkCurve], Array], area: Array | float) -> Array:
-        """Error of a quantity due to the scatter of patches, the split, and the bound.
+        """Error of a quantity due to the scatter of patches, and to a bound that grows.
 
         The waves in the contact are one sample as large as its nominal `area` (m²).
         """
         own = quantity_of(self.own)
-        split = np.abs(quantity_of(self.doubled) - own)
+        growth = 0 * own
         if self.weaker is not None:
-            split = np.hypot(split, quantity_of(self.weaker) - own)
+            growth = np.abs(quantity_of(self.weaker) - own)
         if len(self.single) < 2:
-            return np.asarray(split)
+            return np.asarray(growth)
         deviation = np.std([quantity_of(curve) for curve in self.single], axis=0, ddof=1)
         sample = np.sqrt(self.edge**2 / np.maximum(area, 1e-300))
         scatter = deviation * np.hypot(half_interval(len(self.single)), sample)
-        return np.asarray(np.hypot(scatter, split))
+        return np.asarray(np.hypot(scatter, growth))
 
 
 @dataclass(frozen=True)
@@ -158,8 +154,8 @@ class Companions:
 
     @cached_property
     def coarse(self) -> Contact:
-        """The contact of the case on cells twice as large."""
-        return coarser_contact(self._own)
+        """The contact of the case on cells twice as large, with patches of waves twice as long."""
+        return self._coarse(self.case)
 
     @cached_property
     def own(self) -> WorkCurve:
@@ -199,13 +195,6 @@ class Companions:
         """Contact area (m²) of smooth bodies at pull-off, with the adhesion that is left."""
         law, pair = law_of_patches(self.coarse), self.coarse.pair
         return math.pi * pair.radius * law.length(pair) if law is not None else math.inf
-
-    def doubled(self, law: PatchLaw, how: Splitting) -> Contact:
-        """`coarse` with waves below twice the wavelength of the split in the patches."""
-        wide = replace(how, wavelength=2 * how.wavelength)
-        surface = split_surface(self.case, self.folder, self._own.surface, wide)
-        other = replace(law, patches=surface.patches, wavelength=surface.wavelength)
-        return coarser_contact(replace(self._own, surface=surface, adhesion=other))
 
     @cached_property
     def _scales(self) -> list[ScaleCurves]:
@@ -287,7 +276,14 @@ class Companions:
         return [moved(self.case, end) for end in ENDS]
 
     def _coarse(self, case: Case) -> Contact:
-        return coarser_contact(case.contact(self.folder))
+        contact, how = case.contact(self.folder), case.splitting(self.folder)
+        law = law_of_patches(contact)
+        if law is not None and how is not None:
+            wide = replace(how, wavelength=2 * how.wavelength)
+            surface = split_surface(case, self.folder, contact.surface, wide)
+            other = replace(law, patches=surface.patches, wavelength=surface.wavelength)
+            contact = replace(contact, surface=surface, adhesion=other)
+        return coarser_contact(contact)
 
     def _curve(self, contact: Contact) -> WorkCurve:
         return curve_of(contact, self.depths, self.case.unloading.method)

@@ -13,7 +13,7 @@ from restitution.contact.cohesive.equilibrium import CohesiveState, law_of
 from restitution.contact.cohesive.path import follow, load_cohesive
 from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import RESIDUAL
-from restitution.contact.patch.stored import bodies_in_words, kept
+from restitution.contact.patch.stored import bodies_in_words, is_kept, kept
 from restitution.contact.state import Array
 from restitution.errors import DomainError
 from restitution.numerics.tabulated import Tabulated
@@ -45,9 +45,13 @@ class AttractionCurve:
     @classmethod
     def of(cls, contact: Contact) -> AttractionCurve:
         """Load `contact`, a periodic contact with an attraction of finite range."""
-        models = bodies_in_words(contact.pair), contact.plasticity, contact.adhesion
-        columns = dict(kept(contact.surface, models, lambda: _columns(contact)))
+        columns = dict(kept(contact.surface, _models(contact), lambda: _columns(contact)))
         return cls(contact, jumps=int(columns.pop("jumps")[0]), **columns)
+
+    @staticmethod
+    def is_known(contact: Contact) -> bool:
+        """Whether `of` need not solve `contact`."""
+        return is_kept(contact.surface, _models(contact))
 
     def at(self, gap: Array) -> tuple[Array, Array]:
         """Pressure and dissipated work at each `gap` (m); rigid bodies beyond the first state."""
@@ -66,6 +70,10 @@ class AttractionCurve:
         """Nominal pressure (Pa) of rigid bodies at each `gap` (m)."""
         law, local = law_of(self.contact), self.contact.gap - self.contact.gap.mean()
         return np.array([-float(law.traction(local + g).mean()) for g in gap.tolist()])
+
+
+def _models(contact: Contact) -> object:
+    return bodies_in_words(contact.pair), contact.plasticity, contact.adhesion
 
 
 def _columns(contact: Contact) -> dict[str, Array]:
@@ -146,7 +154,7 @@ class AttractionTable:
         """`count` gaps (m) that show the attraction, and as much repulsion."""
         gap, tension = self.largest_tension
         least = float(self.gap_at(np.asarray(tension)))
-        return np.linspace(least, gap + 4 * (gap - least), count)
+        return np.asarray(np.linspace(least, gap + 4 * (gap - least), count))
 
     def at(self, gap: Array) -> Array:
         """Pressure (Pa) at each `gap` (m)."""
@@ -155,7 +163,7 @@ class AttractionTable:
     def lost_at(self, gap: Array) -> Array:
         """Work per area dissipated by loading to each `gap` (J/m²)."""
         at = (gap - self.pressure.first) / self.pressure.step
-        return np.interp(at, np.arange(self.lost.size), self.lost)
+        return np.asarray(np.interp(at, np.arange(self.lost.size), self.lost))
 
     def gap_at(self, pressure: Array) -> Array:
         """Gap (m) at which the pressure (Pa, not negative) has this value."""
@@ -164,11 +172,12 @@ class AttractionTable:
         gap = p.first + p.step * np.arange(p.values.size)
         inside = np.interp(pressure, p.values[rising], gap[rising])
         _, most, slope = p(np.asarray(p.first))
-        return inside + np.maximum(np.asarray(pressure) - most, 0.0) / slope
+        return np.asarray(inside + np.maximum(np.asarray(pressure) - most, 0.0) / slope)
 
     @cached_property
     def _energy(self) -> Tabulated:
-        gap = self.pressure.first + self.pressure.step * np.arange(self.pressure.values.size)
+        count = np.arange(self.pressure.values.size, dtype=np.float64)
+        gap = np.asarray(self.pressure.first + self.pressure.step * count, dtype=np.float64)
         return replace(self.pressure, values=self.potential(gap)[0])
 
     def energy_between_spheres(self, gap: float, radius: float) -> float:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -199,7 +199,7 @@ def solve_with_patches(
     plastic = np.zeros(contact.grid.nodes) if before is None else before.plastic_displacement
     least = None if before is None else before.least_gap
     box = candidate_box(contact, indentation, before)
-    common = {
+    common: dict[str, Any] = {
         "contact": contact,
         "indentation": indentation,
         "bound": limit,
@@ -296,7 +296,7 @@ def _unloaded(contact: Contact, nodes: PatchNodes) -> Array:
             max_iterations=MAX_ITERATIONS,
             periodic=False,
         )
-    return np.minimum(minimum.point, nodes.limit)
+    return np.asarray(np.minimum(minimum.point, nodes.limit))
 
 
 def _outside(table: RepulsionTable, least: Array, box: Box) -> float:

@@ -11,6 +11,7 @@ import numpy as np
 
 from restitution.arguments import typed
 from restitution.contact.bodies import Pair
+from restitution.contact.checks.findings import Finding
 from restitution.contact.checks.resolution import radius_of_asperities
 from restitution.contact.cohesive.equilibrium import box_gap
 from restitution.contact.cohesive.law import COARSEST, Cohesive, CohesiveLaw
@@ -158,7 +159,7 @@ class PatchAttraction(CohesiveLaw):
         return replace(self, pair=pair, plasticity=contact.plasticity)
 
     def with_work_of_adhesion(self, work_of_adhesion: float) -> PatchAttraction:
-        return replace(self, attraction=self.attraction.with_work_of_adhesion(work_of_adhesion))
+        return replace(self, attraction=replace(self.attraction, work_of_adhesion=work_of_adhesion))
 
     @property
     def work_of_adhesion(self) -> float:  # type: ignore[override]
@@ -166,10 +167,17 @@ class PatchAttraction(CohesiveLaw):
 
     def curve(self, patch: Surface) -> AttractionCurve:
         """The loading of one of the patches."""
+        return AttractionCurve.of(self._contact(patch))
+
+    def _contact(self, patch: Surface) -> Contact:
         pair = self.pair
         assert pair is not None
         model = self.plasticity.of_asperities(pair, 0.5 * pair.contact_modulus * rms_slope(patch))
-        return AttractionCurve.of(Contact(pair, patch, model, self.attraction, periodic=True))
+        return Contact(pair, patch, model, self.attraction, periodic=True)
+
+    def grid_finding(self, contact: Contact) -> Finding | None:
+        known = all(AttractionCurve.is_known(self._contact(patch)) for patch in self.patches)
+        return super().grid_finding(contact) if known else None
 
     @cached_property
     def table(self) -> AttractionTable:

@@ -131,7 +131,7 @@ class RepulsionTable:
 
     def drawn(self, count: int) -> Array:
         """`count` gaps (m) that show the law."""
-        return np.linspace(self.pressure.first, self.touch, count)
+        return np.asarray(np.linspace(self.pressure.first, self.touch, count))
 
     def at(self, gap: Array) -> Array:
         """Pressure (Pa) at each `gap` (m)."""
@@ -140,7 +140,7 @@ class RepulsionTable:
     def of_gap(self, values: Array, gap: Array) -> Array:
         """One of the arrays of the table, at each `gap` (m)."""
         at = (np.asarray(gap) - self.pressure.first) / self.pressure.step
-        return np.interp(at, np.arange(values.size), values)
+        return np.asarray(np.interp(at, np.arange(values.size), values))
 
     def gap_at(self, pressure: Array | float) -> Array:
         """Gap (m) at which loading reaches `pressure` (Pa, positive)."""
@@ -150,7 +150,7 @@ class RepulsionTable:
         )
         _, least, slope = p(np.asarray(p.first))
         beyond = np.maximum(np.asarray(pressure) - least, 0.0)
-        return gap + beyond / np.minimum(slope, -1e-300)
+        return np.asarray(gap + beyond / np.minimum(slope, -1e-300))
 
 
 def _work(pressure: Tabulated, gap: Array) -> tuple[Array, Array, Array]:

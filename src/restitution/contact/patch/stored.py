@@ -89,7 +89,7 @@ def _write(file: Path, columns: Columns) -> None:
         _free_space(file.parent)
         with NamedTemporaryFile(dir=file.parent, suffix=".part", delete=False) as stream:
             try:
-                np.savez(stream, **columns)
+                np.savez(stream, **dict(columns))  # type: ignore[arg-type]
                 stream.close()
                 os.replace(stream.name, file)
             except BaseException:
