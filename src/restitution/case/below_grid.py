@@ -25,8 +25,10 @@ from restitution.surfaces.refine import divided
 from restitution.surfaces.split import SplitSurface, cut, long_waves
 
 BelowGrid = Literal["patch", "omit"]
-CELLS = 2  # default of `split`, in cells of the grid
-_EDGE = 8.0  # edge of a patch divided by the longest wave in it
+# Defaults of `split`, in cells of the grid. With adhesion, more waves make a law of longer range.
+CELLS, ADHESIVE_CELLS = 2, 4
+# Edge of a patch divided by the longest wave in it; patches that adhere are solved more slowly.
+_EDGE, _ADHESIVE_EDGE = 8.0, 4.0
 _LEAST_EDGE = 2.0  # the least such ratio, on a scan that is too small
 TILES = 2  # patches along each edge of the window from which they are cut
 _MOST_NODES = 2048  # along the edge of a patch
@@ -45,7 +47,7 @@ BELOW_GRID = Key(
 SPLIT = Key(
     "wavelength at which the surface is split: shorter waves go into the patches; at least two "
     "grid spacings, and below the contact radius",
-    default=f"{CELLS} grid spacings",
+    default=f"{CELLS} grid spacings, with adhesion {ADHESIVE_CELLS}",
 )
 
 
@@ -148,7 +150,8 @@ def _wanted(case: SplitCase, folder: Path) -> tuple[float, float] | None:
     # A finer grid carries more waves of a scan, but no more waves of a generated surface.
     added = any(part.needs_patches(grid) for part in parts)
     spacing = max(grid.spacing if added else fine.spacing)
-    split = _given(case) or max(CELLS * max(fine.spacing), 2 * spacing)
+    cells = ADHESIVE_CELLS if case.interface.adhesive_energy else CELLS
+    split = _given(case) or max(cells * max(fine.spacing), 2 * spacing)
     cell = min(part.patch_cell(grid, folder) for part in parts)
     if min(part.shortest_wave(grid, folder) for part in parts) > split * (1 - 1e-9):
         return None
@@ -177,7 +180,8 @@ def _sized(case: SplitCase, folder: Path, split: float, cell: float) -> Splittin
     from scipy.fft import next_fast_len
 
     room = min(part.patch_room(folder) for part in case.roughness)
-    edge = min(_EDGE * split, room)
+    wanted = _ADHESIVE_EDGE if case.interface.adhesive_energy else _EDGE
+    edge = min(wanted * split, room)
     if edge < _LEAST_EDGE * split:
         return None
     nodes = math.floor(edge / cell * (1 + 1e-9))
