@@ -95,6 +95,22 @@ def test_impossible_splits_name_the_key(tmp_path, values, named):
         case(**values).contact(tmp_path)
 
 
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"more": 'below_grid = "patch"\nskewness = 0.5'},
+        {
+            "more": 'below_grid = "patch"',
+            "interface": 'work_of_adhesion = "1 J/m^2"\nadhesion = "jkr"',
+        },
+        {"more": 'below_grid = "patch"', "interface": 'plasticity = "truncated"'},
+    ],
+)
+def test_models_without_patches_refuse_the_key(tmp_path, values):
+    with pytest.raises(CaseError, match=r"^roughness.below_grid: .* leave below_grid"):
+        case(**values).contact(tmp_path)
+
+
 def test_scales_that_do_not_separate_are_said(tmp_path):
     shallow = case(velocity="0.1 mm/s")
     assert "would not be small beside the contact radius" in notice_of(shallow, tmp_path)

@@ -142,8 +142,16 @@ def _wanted(case: SplitCase, folder: Path) -> tuple[float, float] | None:
     """Wavelength of the split and cell of the patches (m), if waves go into patches."""
     parts, grid = case.roughness, case.grid.grid()
     choice = _choice(case)
-    if grid is None or not parts or case.periodic or choice == "omit" or not case.can_split:
+    if grid is None or not parts or choice == "omit":
         return None
+    if not case.can_split:
+        if choice is None:
+            return None
+        raise CaseError(
+            'roughness.below_grid: "patch" is not defined with adhesion = "jkr" (or a key that '
+            'needs it), plasticity = "truncated", a periodic grid, skewness or kurtosis; leave '
+            "below_grid out"
+        )
     fine = divided(grid, case.grid.factor)
     if not (choice == "patch" or _matter(case, grid, fine, folder)):
         return None

@@ -307,10 +307,13 @@ class Case(Table):
 
     @property
     def can_split(self) -> bool:
-        """Whether the models of the case are defined with waves below the grid."""
+        """Whether the models and surfaces of the case are defined with waves below the grid."""
         interface = self.interface
         jkr = interface.adhesion == "jkr" or interface.needs_jkr
-        return self.yielding().model.bounds_solve and not (interface.adhesive_energy and jkr)
+        if self.periodic or (interface.adhesive_energy and jkr):
+            return False
+        normal = all(part.is_normal for part in self.roughness)
+        return normal and self.yielding().model.bounds_solve
 
     def splitting(self, folder: Path) -> Splitting | None:
         """How waves below the grid are put into patches; None if they are not."""

@@ -202,7 +202,7 @@ class GeneratedRoughness(Table):
         With `patches`, waves below the grid are left to them.
         """
         fine = divided(grid, factor)
-        needed = needs.generated_bytes(grid, normal=self._normal, periodic=self.periodic)
+        needed = needs.generated_bytes(grid, normal=self.is_normal, periodic=self.periodic)
         needs.require(max(needed, needs.generated_bytes(fine, normal=True, periodic=True)), fine)
         waves = self.model_dump(exclude={"realisations", "below_grid", "split"})
         if patches and self.needs_patches(grid):
@@ -219,7 +219,8 @@ class GeneratedRoughness(Table):
             return kept(made_from, lambda: refine(generate_surface(grid, **waves), factor))
 
     @property
-    def _normal(self) -> bool:
+    def is_normal(self) -> bool:
+        """Whether the heights of patches have the distribution of the surface."""
         return (self.skewness, self.kurtosis) == (0.0, 3.0)
 
     def _bands(self, grid: Grid) -> Bands:
@@ -230,7 +231,7 @@ class GeneratedRoughness(Table):
     def needs_patches(self, grid: Grid) -> bool:
         """Whether `shortest` is a wave that `grid` cannot represent."""
         shortest = self.shortest or math.inf
-        return self._normal and shortest < 2 * max(grid.spacing) * (1 - 1e-9)
+        return self.is_normal and shortest < 2 * max(grid.spacing) * (1 - 1e-9)
 
     def share_below(self, grid: Grid, folder: Path) -> float:
         """0: `needs_patches` says whether waves are below the grid."""
@@ -388,6 +389,11 @@ class MeasuredRoughness(Table):
         # Level the scan before cutting out the part that the grid covers, because tilt and form are
         # properties of the whole scan.
         return place_of(noted(level(scan, self.detrend)), self.place)
+
+    @property
+    def is_normal(self) -> bool:
+        """True: patches have the heights of the scan."""
+        return True
 
     def needs_patches(self, grid: Grid) -> bool:
         """False: without patches, the waves below `grid` are left out."""

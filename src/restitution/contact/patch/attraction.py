@@ -19,8 +19,8 @@ from restitution.errors import DomainError
 from restitution.numerics.tabulated import Tabulated
 
 # A patch is loaded up to this fraction of E*, or of the yield pressure if that is smaller, or until
-# this fraction of it is in contact.
-_HIGHEST, _OF_HARDNESS, _CLOSED = 0.1, 0.97, 0.95
+# this fraction of it is in contact under a pressure of _BEYOND times w/z₀.
+_HIGHEST, _OF_HARDNESS, _CLOSED, _BEYOND = 0.1, 0.97, 0.95, 3.0
 _ACCURACY = 4e-5  # of the steps: finer than for a force, because the table is interpolated
 _CELLS = 4096  # of the table
 _FAR = 25.0  # gap at the end of the table beyond the highest asperity, in units of z₀
@@ -92,12 +92,15 @@ def _columns(contact: Contact) -> dict[str, Array]:
 def _loading(contact: Contact) -> Iterator[CohesiveState]:
     top = _HIGHEST * contact.pair.contact_modulus
     top = min(top, _OF_HARDNESS * contact.hardness)
+    law = law_of(contact)
+    beyond = _BEYOND * law.work_of_adhesion / law.equilibrium_separation
     begin = load_cohesive(contact, -np.inf, start=None, residual=RESIDUAL)
     yield begin
     try:
         for state in follow(begin, np.inf, residual=RESIDUAL, accuracy=_ACCURACY):
             yield state
-            if state.nominal_pressure > top or state.relative_area > _CLOSED:
+            closed = state.relative_area > _CLOSED and state.nominal_pressure > beyond
+            if closed or state.nominal_pressure > top:
                 return
     except DomainError:  # the largest pressure of elastic bodies
         return

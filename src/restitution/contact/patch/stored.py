@@ -23,7 +23,7 @@ from restitution.surfaces import Surface
 
 Columns = Mapping[str, Array]
 
-_FORMAT = 2  # number of the form of the columns
+_FORMAT = 3  # number of the form of the columns
 _MOST = 400  # files
 _IN_MEMORY = 256
 _known: dict[str, Columns] = {}
