@@ -2,7 +2,7 @@ r"""Impacts without adhesion: waves in patches, or left out, beside cells 8 time
 
     python -m evidence.two_scales.dry --topographies ../shared/topographies
 
-writes dry.csv, a row for each COR of 24 random cases (scan, twin and self-affine surfaces; constant
+writes dry.csv, a row for each COR of 18 random cases (scan, twin and self-affine surfaces; constant
 and growing bound).
 """
 
@@ -25,7 +25,7 @@ from restitution.surfaces import generate_surface
 
 TABLE = Path(__file__).with_suffix(".csv")
 FINER = 8
-CASES, FIRST = 24, 100
+CASES, FIRST = 18, 100
 SCANS = (
     # file, edge in um, detrend, what the file does not say, Rq in nm
     ("di-3.di", 10, "tilt", "", 230),

@@ -2,8 +2,8 @@ r"""Does COR depend on the split, the edge of the patches or the cells of the gr
 
     python -m evidence.two_scales.independence
 
-writes independence.csv: steel against steel, one surface with waves from 0.4 um and a roll-off at 3 um, all of which
-the direct solve carries. The error is that of the scatter between patches and of the split.
+writes independence.csv: steel against steel, one surface with waves from 0.4 um and a roll-off at
+3 um, all of which the direct solve carries. The error is that of the scatter between patches.
 """
 
 from __future__ import annotations
