@@ -134,6 +134,8 @@ def test_a_scan_on_coarse_cells(tmp_path):
     text = CASE.format(**{**USUAL, "velocity": "0.02 m/s"})
     a, b = text.index("[roughness]"), text.index("[grid]")
     scan = '[roughness]\nkind = "measured"\nfile = "scan.npy"\nsize = "24 um"\n'
+    assert parse_case(text[:a] + scan + text[b:]).contact(tmp_path).adhesion is None
+    scan += 'below_grid = "patch"\n'
     given = parse_case(text[:a] + scan + text[b:])
     contact = given.contact(tmp_path)
     assert isinstance(contact.adhesion, PatchRepulsion)

@@ -304,7 +304,6 @@ file = "{file}"
 detrend = "tilt"
 extend = "twin"
 seed = 1
-below_grid = "omit"
 [grid]
 nodes = [96, 96]
 spacing = "0.25 um"

@@ -33,7 +33,6 @@ _LEAST_EDGE = 2.0  # the least such ratio, on a scan that is too small
 TILES = 2  # patches along each edge of the window from which they are cut
 _MOST_NODES = 2048  # along the edge of a patch
 _BYTES = 250.0  # per node of a window
-_MATTERS = 0.1  # rms slope of the waves below the grid, as a fraction of that of all waves
 _MOST_REFINED = 512  # nodes along the edge of a patch that is refined for its adhesion
 _REACH = 0.5  # cell divided by sqrt(r z₀) for asperities of radius r (docs/adhesion.md)
 
@@ -41,8 +40,8 @@ BELOW_GRID = Key(
     'what happens to waves that the grid does not carry ([two scales](two-scales.md)): `"patch"` '
     'solves them on periodic patches, whose law the contact uses; `"omit"` leaves them out, and '
     "the total error includes them",
-    default='`"patch"` where they matter',
-    page=Input("Waves below the grid", more=True, empty="patch where they matter"),
+    default='`"omit"` for scans, `"patch"` for generated waves below two cells',
+    page=Input("Waves below the grid", more=True, empty="left out of scans"),
 )
 SPLIT = Key(
     "wavelength at which the surface is split: shorter waves go into the patches; at least two "
@@ -153,7 +152,7 @@ def _wanted(case: SplitCase, folder: Path) -> tuple[float, float] | None:
             "below_grid out"
         )
     fine = divided(grid, case.grid.factor)
-    if not (choice == "patch" or _matter(case, grid, fine, folder)):
+    if choice is None and not any(part.needs_patches(grid) for part in parts):
         return None
     # A finer grid carries more waves of a scan, but no more waves of a generated surface.
     added = any(part.needs_patches(grid) for part in parts)
@@ -204,16 +203,6 @@ def _sized(case: SplitCase, folder: Path, split: float, cell: float) -> Splittin
             'short waves (roughness.shortest), or set below_grid = "omit"'
         )
     return Splitting(split, cell, nodes, tiles)
-
-
-def _matter(case: SplitCase, grid: Grid, fine: Grid, folder: Path) -> bool:
-    """Whether the case leaves the choice open and waves below the grid change its restitution."""
-    if math.isinf(case.yielding().hardness) and not case.interface.adhesive_energy:
-        return any(part.needs_patches(grid) for part in case.roughness)
-    return any(
-        part.needs_patches(grid) or part.share_below(fine, folder) > _MATTERS
-        for part in case.roughness
-    )
 
 
 def split_surface(case: SplitCase, folder: Path, surface: Surface, how: Splitting) -> SplitSurface:

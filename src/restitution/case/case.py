@@ -287,13 +287,17 @@ class Case(Table):
         return self.interface.yielding(**self.bodies())
 
     def deepest_indentation(self) -> float:
-        """The deepest indentation (m); without [indentation], that of smooth Thornton–Ning bodies.
+        """The deepest indentation (m), by `indentation_at`."""
+        return self.indentation_at(self.depths()[-1])
 
-        NaN for a periodic case without [indentation].
+    def indentation_at(self, depth: float) -> float:
+        """The indentation (m) at `depth`, one of `depths`: m, N, m/s or Pa.
+
+        Without [indentation], that of smooth Thornton–Ning bodies; NaN for a periodic case.
         """
-        last, pair = self.depths()[-1], self.pair()
+        pair = self.pair()
         if self.indentation is not None:
-            return last
+            return depth
         if self.periodic:
             return math.nan
         # The yield pressure p_y of elastic bodies is infinite, but ThorntonNing needs a finite
@@ -301,9 +305,9 @@ class Case(Table):
         p_y = min(self.yielding().hardness, pair.contact_modulus)
         smooth = ThorntonNing(pair.radius, pair.contact_modulus, p_y)
         if self.load is not None:
-            return float(smooth.indentation(last))
+            return float(smooth.indentation(depth))
         assert pair.mass is not None  # checked by _check_masses
-        return float(smooth.indentation_from_velocity(last, pair.mass))
+        return float(smooth.indentation_from_velocity(depth, pair.mass))
 
     @property
     def can_split(self) -> bool:

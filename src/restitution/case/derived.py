@@ -11,10 +11,7 @@ from restitution.theory import JKR, FirstYield
 
 
 def deepest_indentation(case: Case) -> float:
-    """The deepest indentation (m); without [indentation], that of smooth Thornton–Ning bodies.
-
-    NaN for a periodic case without [indentation].
-    """
+    """The deepest indentation (m), by `Case.indentation_at`."""
     return case.deepest_indentation()
 
 

@@ -38,7 +38,7 @@ from restitution.surfaces.reading.scan import UNITS, in_metres
 from restitution.surfaces.refine import divided
 from restitution.surfaces.refused import Code, RefusedSurfaceError
 from restitution.surfaces.shift import note_mirrored_part, place_of
-from restitution.surfaces.split import Bands, long_waves, share_below
+from restitution.surfaces.split import Bands, long_waves
 from restitution.surfaces.surface import Array
 from restitution.surfaces.twin import LEAST_PIXELS
 
@@ -233,10 +233,6 @@ class GeneratedRoughness(Table):
         shortest = self.shortest or math.inf
         return self.is_normal and shortest < 2 * max(grid.spacing) * (1 - 1e-9)
 
-    def share_below(self, grid: Grid, folder: Path) -> float:
-        """0: `needs_patches` says whether waves are below the grid."""
-        return 0.0
-
     def shortest_wave(self, grid: Grid, folder: Path) -> float:
         """Length (m) of the shortest wave of the surface."""
         return self.shortest or 2 * max(grid.spacing)
@@ -398,13 +394,6 @@ class MeasuredRoughness(Table):
     def needs_patches(self, grid: Grid) -> bool:
         """False: without patches, the waves below `grid` are left out."""
         return False
-
-    def share_below(self, grid: Grid, folder: Path) -> float:
-        """Share of the rms slope of the scan that waves below `grid` have."""
-        scan = self._unmoved(folder)
-        if max(grid.spacing) <= min(scan.grid.spacing) * (1 + 1e-9):
-            return 0.0
-        return share_below(scan, grid.spacing)
 
     def shortest_wave(self, grid: Grid, folder: Path) -> float:
         """Length (m) of the shortest wave of the scan."""

@@ -189,6 +189,10 @@ class Adhesion(ABC):
         """Copy with another work of adhesion (J/m²)."""
         return replace(self, work_of_adhesion=work_of_adhesion)  # type: ignore[type-var]
 
+    def with_work_tolerance(self, tolerance: float) -> Adhesion:
+        """Copy whose loading work may have this relative error, if the model has a choice."""
+        return self
+
     def length(self, pair: Pair) -> float:
         """Length scale of adhesion (w²R*/E*²)^⅓ (m); 0 between flat bodies."""
         if pair.flat:
@@ -225,9 +229,16 @@ class Adhesion(ABC):
         """Move a deformed contact to another indentation (m)."""
 
     def enclose(
-        self, contact: Contact, reached: Callable[[State], bool], start: State | None
+        self,
+        contact: Contact,
+        reached: Callable[[State], bool],
+        ahead: Callable[[State, float], float],
+        start: State | None,
     ) -> tuple[State, State] | None:
-        """Last state of loading that is not `reached` and the first that is; None: no path."""
+        """Last state of loading that is not `reached` and the first that is; None: no path.
+
+        `ahead` estimates the distance (m) left from a state and the stiffness there (N/m).
+        """
         return None
 
     def first_depth(self, contact: Contact, work: float, shallow: float) -> float:

@@ -171,7 +171,7 @@ def force_of(pair: Pair, results: xr.Dataset, unloading: Sequence[UnloadingCurve
         pair=pair,
         deepest=float(depth[-1]),
         highest=float(np.nanmax(results["impact_velocity"].values)),
-        loading=_loading(depth, force, results["loading_work"].values),
+        loading=loading_force(depth, force, results["loading_work"].values),
         separation=_separation(results, depth),
         unloading_from=np.array([curve.start for curve in unloading]),
         unloading=tuple((curve.indentation, curve.force) for curve in unloading),
@@ -308,7 +308,7 @@ def _integrate(
     return path
 
 
-def _loading(depth: Array, force: Array, work: Array) -> Force:
+def loading_force(depth: Array, force: Array, work: Array) -> Force:
     with np.errstate(divide="ignore", invalid="ignore"):
         powers = force * depth / work
     if (work > 0).all() and (powers > 0.5).all() and (powers < _STEEPEST).all():

@@ -172,6 +172,7 @@ def _points(run: RunResults) -> list[LawPoint]:
                 force=impact.force,
                 pull_off_force=_known(impact.pull_off_force),
                 pull_off_error=_known(impact.pull_off_error),
+                separation=_known(impact.separation_indentation),
                 resolved=impact.resolved,
             )
         )

@@ -31,7 +31,8 @@ class LawPoint:
     """The result at one impact velocity, in SI units.
 
     `ratio` is W_u/W_l, unloading work over loading work; zero or negative if the pair sticks.
-    `error` is that of `restitution`; `indentation` and `force` are the maxima of the impact.
+    `error` is that of `restitution`; `indentation` and `force` are the maxima of the impact, and
+    `separation` the indentation at which the bodies separate.
     """
 
     velocity: Positive
@@ -43,6 +44,7 @@ class LawPoint:
     force: float
     pull_off_force: float | None
     pull_off_error: NotNegative | None = None
+    separation: float | None = None
     resolved: bool
 
     @model_validator(mode="after")

@@ -125,7 +125,7 @@ def run_case(
             run.warn(warning)
         with out.tables():
             failure = _load_and_unload(case, folder, contact, out, run, go_on=errors)
-        run.sticking = sticking(case, folder, out.curve)
+        run.sticking = sticking(case, folder, out.curve, run.deepest)
         if errors and case.total_error and out.curve.points:
             budget = ErrorBudget(case, folder, out.curve.points, run.progress, run.material_parts)
             try:

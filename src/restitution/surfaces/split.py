@@ -10,7 +10,6 @@ import numpy as np
 from restitution.arguments import typed
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
-from restitution.surfaces.describe import rms_slope
 from restitution.surfaces.noise import white_noise
 from restitution.surfaces.resample import carried
 from restitution.surfaces.spectra import Spectrum
@@ -72,13 +71,6 @@ def long_waves(surface: Surface, wavelength: float) -> Surface:
     """`surface` without waves shorter than `wavelength` (m) along an axis."""
     cell = 0.5 * wavelength
     return replace(surface, height=np.ascontiguousarray(carried(surface, (cell, cell))))
-
-
-def share_below(surface: Surface, spacing: tuple[float, float]) -> float:
-    """Share of the rms slope of `surface` that waves shorter than two cells of `spacing` have."""
-    short = replace(surface, height=surface.height - carried(surface, spacing))
-    whole = rms_slope(surface)
-    return rms_slope(short) / whole if whole > 0 else 0.0
 
 
 def cut(height: Array, spacing: tuple[float, float], nodes: int, tiles: int) -> tuple[Surface, ...]:
