@@ -30,6 +30,7 @@ from restitution.runs.losses import loss_warnings, unloading_of, with_losses
 from restitution.runs.messages import input_warnings, require_possible
 from restitution.runs.refinement import least_refined, with_chosen_adhesion, with_chosen_grids
 from restitution.runs.smooth import smooth_curve
+from restitution.runs.two_scales import solve_patches
 from restitution.surfaces import Surface
 
 _PARTIAL = 0.7  # time (s) between two drawings of a curve that is still being computed
@@ -159,6 +160,7 @@ class _Curve:
             self.failure, failed = self.failure or error, failed + 1
             return not isinstance(error, DomainError)
 
+        solve_patches(self.contact, lambda _: check())
         loads = loads_of(self.case, folder, self.contact, unloaded=0)
         for impact in follow(loads, CaseUnloading.of_case(self.case), fail):
             check()

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from restitution.case.case import Case
-from restitution.case.derived import indentation_at
 from restitution.contact.checks.resolution import NODES_PER_RADIUS, predicted_radius
 from restitution.contact.contact import Contact
 from restitution.contact.models import COMPANION
@@ -57,7 +56,7 @@ class Ladder:
         contact = replace(contact, surface=replace(contact.surface, provenance=provenance))
         # The contact on cells that are larger by the factors 1, 2, 4, …
         self.case, self._contacts = case, [contact]
-        deep = {depth: indentation_at(case, depth) for depth in case.depths()}
+        deep = {depth: case.indentation_at(depth) for depth in case.depths()}
         cell, pair, limit = max(contact.grid.spacing), contact.pair, contact.hardness
         # The nodes in the predicted radius of the contact at each depth.
         self._nodes = {depth: predicted_radius(pair, deep[depth], limit) / cell for depth in deep}

@@ -24,7 +24,9 @@ from restitution.plots.run import (
     abscissae,
     depth_maps_figure,
     has_map,
+    has_patches,
     load_displacement,
+    patch_law,
     pressure_map,
     restitution_figure,
     unloading_lines,
@@ -43,6 +45,8 @@ def write_run_page(out: Path) -> Path:
         if run.oblique and has_oblique(results):
             parts.append(_oblique_drawing(results, run.oblique))
         parts.append(_force(results))
+        if has_patches(results):
+            parts.append(_patches(results))
         if has_map(results):
             parts.append(_pressure(results))
         if has_maps(out):
@@ -128,6 +132,23 @@ def _force(results: xr.Dataset) -> Drawing:
         f"{quantity(1e-6 * depth.max(), 'm')}",
         f"The loading curve{', and unloading curves from some of the depths' * bool(unloading)}.",
         PageTable("Curves", ["curve", "indentation (µm)", "force (N)"], rows),
+    )
+
+
+def _patches(results: xr.Dataset) -> Drawing:
+    gap, pressure = 1e9 * results["patch_gap"].values, 1e-6 * results["patch_pressure"].values
+    return Drawing(
+        "Waves below the grid",
+        patch_law(results),
+        f"Nominal pressure of the patches against the gap of their mean planes, from "
+        f"{pressure.min():.3g} to {pressure.max():.3g} MPa",
+        "The law of the waves that the grid does not carry, solved on periodic patches. Tension is "
+        "negative.",
+        PageTable(
+            "Law of the patches",
+            ["gap (nm)", "pressure (MPa)"],
+            [[float(g), float(p)] for g, p in zip(gap[::20], pressure[::20], strict=True)],
+        ),
     )
 
 

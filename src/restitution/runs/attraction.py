@@ -124,6 +124,8 @@ def curve_errors(
         values = np.array([own, *map(quantity_of, companions.others())])
         half = half_interval(len(values)) * values.std(axis=0, ddof=1)
         errors.append(np.abs(own - values.mean(axis=0)) + half)
+    if scales := companions.scales():
+        errors.append(scales.error(quantity_of, companions.area_at_pull_off))
     for low, high in companions.material_ends():
         ends = [np.abs(quantity_of(companions.curve(contact)) - own) for contact in (low, high)]
         errors.append(np.maximum(*ends))

@@ -9,6 +9,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
+from restitution.case.below_grid import notice_of
 from restitution.case.case import Case
 from restitution.case.derived import deepest_indentation, derived_quantities
 from restitution.case.omissions import omissions
@@ -51,6 +52,7 @@ from restitution.runs.result_warnings import (
     velocities_missed,
 )
 from restitution.runs.smooth import smooth_curve
+from restitution.runs.two_scales import patch_curve, solve_patches, told
 from restitution.surfaces import describe
 
 CONVENTIONS = {
@@ -115,6 +117,9 @@ def run_case(
     ):
         case = with_chosen_grids(case, folder, run.warn)
         contact = case.contact(folder)
+        if (notice := notice_of(case, folder)) is not None:
+            run.warn(notice)
+        solve_patches(contact, run.progress)
         case = with_chosen_adhesion(case, contact, run.warn)
         deepest = deepest_indentation(case)
         require_possible(contact, deepest)
@@ -157,6 +162,7 @@ def _write_results(
     dataset = results_dataset(out, deepest)
     with suppress(RestitutionError):  # if the smooth curve fails, the results omit it
         dataset = dataset.assign(smooth_curve(deepest.contact, out.curve.points))
+    dataset = dataset.assign(patch_curve(deepest.contact))
     dataset.attrs = status_attributes(summary) | case_attributes(summary, text)
     points = out.curve.points
     write_maps(out.path, run.maps[: len(points)], points, _MAPS_ALONG)
@@ -235,6 +241,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> d
             "plasticity": contact.plasticity.label,
             **interface_of(contact).describe(case.unloading.method),
             "half_space": "free, Love cells, zero-padded FFT",
+            "below_grid": told(contact),
             **asdict(contact.grid),
             "refine": case.grid.refine,
             "yield_pressure": case.yielding().source,
