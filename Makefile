@@ -11,7 +11,7 @@ FAST_TESTS := tests/theory tests/numerics tests/test_collision.py
 KERNEL_TESTS := tests/numerics/test_compiled.py tests/numerics/convolution/test_operators.py
 WITHOUT_COMPILER := CC=/bin/false CXX=/bin/false
 
-.PHONY: help demo test test-programs test-fast test-kernels test-clang wheel test-wheel fuzz mutation lint docs docs-links bench bench-peers bench-periodic clean
+.PHONY: help demo test test-programs test-fast test-kernels test-clang test-kratos wheel test-wheel fuzz mutation lint docs docs-links bench bench-peers bench-periodic clean
 
 .DEFAULT_GOAL := demo
 
@@ -54,6 +54,15 @@ test-clang: $(VENV)/test.installed  ## the same for kernels that Clang compiles
 	CC=clang CXX=clang++ $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --target dist/clang .
 	grep -q "clang version" dist/clang/restitution/numerics/loops*.so
 	$(call test_each_instruction_set,$(CURDIR)/dist/clang)
+
+test-kratos: $(VENV)/test.installed .venv-kratos/installed  ## the export to Kratos DEM in Kratos 10.4, in an environment of its own
+	KRATOS_PYTHON=$(CURDIR)/.venv-kratos/bin/python DUCC0_NUM_THREADS=1 $(BIN)/pytest tests/dem/test_kratos.py
+
+.venv-kratos/installed:
+	$(PYTHON) -m venv --clear .venv-kratos
+	echo '*' > .venv-kratos/.gitignore
+	.venv-kratos/bin/python -m pip install --quiet --disable-pip-version-check KratosMultiphysics==10.4 KratosDEMApplication==10.4
+	@touch $@
 
 wheel: $(BIN)/python  ## a wheel of the package, in dist/
 	rm -rf build dist/*.whl
@@ -110,7 +119,7 @@ bench-periodic: $(VENV)/test.installed $(PEERS)  ## time periodic contacts besid
 	@touch $@
 
 clean:  ## remove the environments, the demo, and what was built
-	rm -rf $(VENV) .venv-peers demo build dist docs/_build docs/auto_gallery
+	rm -rf $(VENV) .venv-peers .venv-kratos demo build dist docs/_build docs/auto_gallery
 
 $(BIN)/python:
 	@$(PYTHON) -c 'import sys; sys.exit(0 if sys.version_info >= (3, 11) else "restitution needs Python 3.11 or newer: make PYTHON=python3.11")'

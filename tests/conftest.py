@@ -25,7 +25,7 @@ SOURCES = Path(__file__).parents[1] / "src" / "restitution" / "numerics"
 # code. Tests that run a case in a process of its own are marked one by one.
 PROGRAMS = {
     *("browser", "opened", "app", "own_app", "cluster"),
-    *("lammps", "lammps_environment", "liggghts", "yade", "python_with"),
+    *("lammps", "lammps_environment", "liggghts", "yade", "kratos", "python_with"),
 }
 
 
@@ -153,6 +153,7 @@ def _law_of(first=GLASS, second=GLASS, at=1.0, **changes):
         0 if body.wall else 1 / (body.density * 4 / 3 * np.pi * body.radius**3) for body in bodies
     )
     V = np.geomspace(0.01, 10, 13)
+    depth = (15 * m * V**2 / (16 * E * R**0.5)) ** 0.4  # Hertz
     e = np.maximum(0.95 - 0.65 * (np.log10(V * at) + 2) / 3, 0.1)
     points = tuple(
         LawPoint(
@@ -161,12 +162,12 @@ def _law_of(first=GLASS, second=GLASS, at=1.0, **changes):
             error=0.004,
             ratio=float(c**2),
             loading_work=0.5 * m * v**2,
-            indentation=1e-6,
-            force=1.0,
+            indentation=d,
+            force=4 / 3 * E * R**0.5 * d**1.5,
             pull_off_force=None,
             resolved=True,
         )
-        for v, c in zip(V.tolist(), e, strict=True)
+        for v, c, d in zip(V.tolist(), e, depth.tolist(), strict=True)
     )
     values = {
         "title": "by hand",

@@ -10,6 +10,7 @@ def point(kind=Point, **values):
         for header, column in kind.columns().items()
     }
     ones |= {"refine": ones.pop("refinement"), "surface_scatter": 0.0}
+    ones["restitution_with_losses"] = values.get("restitution", 1.0)
     return kind(**ones | values)
 
 

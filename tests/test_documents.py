@@ -37,6 +37,14 @@ NOT_RUN = {
     ("docs/dem.md", "python match_velocity.py --wall 2 z 0.0 -- lmp -in my.in"): (
         "needs a simulation of its own"
     ),
+    ("docs/any-code.md", "restitution export law --to c -o contact"): (
+        "needs the law of another page"
+    ),
+    ("docs/any-code.md", "cc -O2 collide.c -lm && ./a.out"): "compiles the exported file",
+    (
+        "docs/other-codes.md",
+        "sh evidence/codes/in_own_environment.sh evidence/codes/in_rapier.mjs",
+    ): "installs packages",
     ("docs/mixture.md", "restitution mixture mixture.toml -o powders"): "takes minutes",
     (
         "docs/tutorials/sticking.md",

@@ -20,6 +20,7 @@ ROOMS = (
     "collision",
     "curve",
     "repeated",
+    "losses",
     "case",
     "results",
     "laws",
@@ -124,7 +125,7 @@ def test_imports_point_up_the_list_only():
     assert wrong_way(graph(MODULES)) == []
 
 
-MODELS = ("plasticity", "jkr", "cohesive")
+MODELS = ("plasticity", "jkr", "cohesive", "patch")
 MODEL_NAMES = re.compile(
     r"Elastic|ConstantBound|ExpandingCavity|Truncated|JKRLimit|Cohesive|CrackClosure|PohrtPopov"
     r"|isinstance\(.*(State|Plasticity|Adhesion)\)|\.(adhesive|grows|bounds_solve|exact_work|"

@@ -246,10 +246,12 @@ def export(
     Args:
         laws: One law or several, one for each pair of particles. Each is a `Law`, or a folder that
             holds a law or results (see `law_of`). The folder of a mixture gives all of its laws.
-        to: DEM code ("lammps", "liggghts", "yade", "mercurydpm", "edem", "mujoco" or "drake"), or
+        to: DEM code ("lammps", "liggghts", "yade", "mercurydpm", "edem", "kratos", "mujoco",
+            "drake", "lammps-adhesive", "liggghts-adhesive"), "c" or "python" for other codes, or
             "csv" to write a table.
         out: Folder for the files; existing files are never overwritten.
-        velocity: Impact velocity, such as "1 m/s", or a number (m/s). It is optional for "csv".
+        velocity: Impact velocity, such as "1 m/s", or a number (m/s). It is optional for
+            "c", "python" and "csv".
         coverage: How many times earlier impacts have covered the surfaces (dimensionless); None for
             the first impact. The cases need the table [impacts].
 

@@ -139,7 +139,7 @@ def collide(
         separation_indentation=state.separation_indentation,
     )
     adhesion = contact.adhesion
-    if adhesion is None:
+    if adhesion is None or not adhesion.attracts:
         return elastic
     if method == "energy-estimate":
         owed = adhesion.attraction_energy(state)

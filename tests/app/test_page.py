@@ -124,6 +124,19 @@ def test_pinned_curves_are_drawn_compared_and_removed(page):
     expect(page.locator("#no-pins")).to_be_visible()
 
 
+def test_the_axes_include_a_pinned_curve(page):
+    computed(page)
+    page.get_by_role("button", name="Pin this curve").click()
+    change(page, "#field-indentation-to", "30 nm")
+    low, high = page.evaluate("document.getElementById('cor').layout.xaxis.range")
+    (pinned,) = page.evaluate(
+        "document.getElementById('cor').data.filter((t) => t.name === 'pin 1').map((t) => t.x)"
+    )
+    assert 10**low < min(pinned) < max(pinned) < 10**high
+    low, high = page.evaluate("document.getElementById('force').layout.xaxis.range")
+    assert low <= 0.02 < 0.2 < high  # in µm
+
+
 def test_the_cursor_is_moved_by_arrow_keys(page):
     computed(page)
     page.locator("#cursor").focus()

@@ -7,6 +7,7 @@ import os
 import pickle
 import re
 import signal
+import sys
 import time
 import zipfile
 from pathlib import Path
@@ -284,6 +285,42 @@ def test_a_newer_request_of_the_tab_replaces_an_older_one(app):
     assert time.perf_counter() - began < 10
     assert json.loads(connection.getresponse().read().splitlines()[-1]) == {"replaced": True}
     connection.close()
+
+
+def test_a_newer_request_interrupts_the_solve_of_one_depth(app):
+    """The process that computes is not ended: it would take seconds to start again."""
+    app.post("curve", tab="c", content=app.content())
+    slow = app.content() | {"grid": {"nodes": 256, "spacing": "5 nm"}}
+    slow["first"] = {"material": "silica", "radius": "5 um"}
+    slow["interface"] = {"work_of_adhesion": "0.05 J/m^2", "adhesion": "cohesive"}
+    slow["roughness"] = [{"kind": "gaussian", "rms": "2 nm", "correlation_length": "0.1 um"}]
+    slow["roughness"][0]["seed"] = 1
+    slow["indentation"] = {"values": ["30 nm"]}
+    connection = http.client.HTTPConnection("127.0.0.1", int(app.port), timeout=60)
+    headers = {"X-Token": app.token, "Content-Type": "application/json"}
+    before = app.workers()
+    connection.request("POST", "/api/curve", json.dumps({"tab": "c", "content": slow}), headers)
+    time.sleep(0.5)
+    *_, line = app.post("curve", tab="c", content=app.content())
+    assert len(line["curve"]) == 2
+    assert json.loads(connection.getresponse().read().splitlines()[-1]) == {"replaced": True}
+    connection.close()
+    assert app.workers() == before
+
+
+def test_an_import_is_not_interrupted(tmp_path, monkeypatch):
+    from restitution.app.worker import _imports
+
+    (tmp_path / "imported_by_a_test.py").write_text(
+        "import sys\n"
+        "from restitution.app.worker import _imports\n"
+        "noticed = _imports(sys._getframe())\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    import imported_by_a_test
+
+    assert imported_by_a_test.noticed
+    assert not _imports(sys._getframe())
 
 
 def test_the_files_to_take_away_agree_with_the_page(app):

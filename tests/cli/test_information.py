@@ -11,7 +11,10 @@ def test_a_yield_strength_of_the_library_is_information_and_no_warning(cli, tmp_
         'grid = { nodes = 32, spacing = "0.5 um" }\nindentation = { values = ["50 nm"] }\n'
         "unloading = { curves = 0 }\n"
     )
-    line = "The contact yields according to Y of first (steel), 2030 MPa; interface.yield_strength"
+    line = (
+        "The contact yields according to Y of first (steel), 3300 MPa (H/2.4, from rebound tests); "
+        "interface.yield_strength"
+    )
     status, said, warned = cli("check", case)
     assert status == 0
     assert line in said

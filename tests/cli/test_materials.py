@@ -10,7 +10,7 @@ def test_the_list_has_every_material(cli):
     assert status == 0
     rows = {line.split()[0]: line for line in said.splitlines()[1:-1]}
     assert list(rows) == list(materials())
-    assert rows["steel"].split()[1:6] == ["203", "0.3", "7830", "2030", "7.9"]
+    assert rows["steel"].split()[1:6] == ["203", "0.3", "7830", "3300", "7.9"]
     assert rows["glass"].split()[4] == "-"
 
 

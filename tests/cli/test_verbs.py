@@ -17,6 +17,7 @@ unloading_work_J restitution impact_velocity_m_per_s contact_nodes contact_patch
 largest_patch_nodes residual convolutions pull_off_force_N pull_off_error_N separation_indentation_m
 restitution_error sticks adhesion_resolved adhesive_spacing_m median_patch_nodes resolved
 discretisation_error surface_scatter material_error total_error model_error refine
+restitution_with_losses plate_factor waves_factor viscosity_factor loss_error
 """.split()  # noqa: SIM905
 
 

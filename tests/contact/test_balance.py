@@ -57,6 +57,15 @@ def test_a_balance_lies_on_the_curve_of_jkr(depth):
     assert force == approx(float(SMOOTH.force(at + later)), abs=0.035 * F_C)
 
 
+def test_a_loose_tolerance_of_the_loading_work_saves_solves_and_is_met():
+    exact, _ = sphere((0.37, 0.12), 30 * BREAK)
+    loose = replace(exact, adhesion=exact.adhesion.with_work_tolerance(0.04))
+    states = [solve(contact, 30 * BREAK) for contact in (exact, loose)]
+    assert states[1].convolutions < 0.7 * states[0].convolutions
+    assert states[1].loading_work == approx(states[0].loading_work, rel=0.04)
+    assert states[0].work_error < states[1].work_error < 0.1 * states[1].loading_work
+
+
 def test_unloading_joins_that_from_a_shallower_depth():
     contact, _ = sphere((0.31, 0.17), 6 * BREAK)
     shallow = list(separate(solve(contact, 4 * BREAK)))

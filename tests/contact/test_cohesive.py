@@ -170,7 +170,7 @@ def test_energies_balance_in_random_contacts(tabor, depth, rough, seed, hard):
     rest = -end.potential_energy  # work of the rest of the way
     by_force = -integrate_curve(depths, forces) - rest
     scale = state.stored_energy + abs(state.interaction_energy)
-    assert by_force == approx(found.unloading_work, abs=max(3 * found.error, 2e-3 * scale))
+    assert by_force == approx(found.unloading_work, abs=max(3 * found.error, 5e-3 * scale))
     assert min(s.adhesive_loss for s in path) >= 0
     assert all(b.adhesive_loss >= a.adhesive_loss for a, b in itertools.pairwise(path))
 
@@ -264,7 +264,7 @@ def test_each_step_adds_its_error(monkeypatch):
     assert {is_smooth for _, _, is_smooth, _ in steps} == {False, True}
     for state, trial, is_smooth, new in steps:
         added = new.work_error - state.work_error
-        left = state.unaccounted + trial.by_parabola - trial.change
+        left = state.unaccounted + trial.by_quartic - trial.change
         if is_smooth:
             assert new.unaccounted == approx(left, rel=1e-9)
             assert added == approx(abs(left) - abs(state.unaccounted), rel=1e-6)
@@ -278,8 +278,8 @@ def test_increments_of_plastic_work_add_their_error(monkeypatch):
     monkeypatch.setattr(ExpandingCavity, "work", lambda *_: (0.0, 1e-20))
     tried, make = [], cohesive_path._try
 
-    def watched(previous, state, at, residual):
-        tried.append((state, make(previous, state, at, residual)))
+    def watched(state, at, residual):
+        tried.append((state, make(state, at, residual)))
         return tried[-1][1]
 
     monkeypatch.setattr(cohesive_path, "_try", watched)
@@ -298,9 +298,7 @@ def test_the_error_of_unloading_is_that_of_the_steps_and_of_the_grid():
     path = list(unloading_path(solve(sphere(1.0, 2.0), 2 * Z0)))
     found, end = separation_of(path), path[-1]
     lost = end.adhesive_loss - path[0].adhesive_loss
-    depth, force = ([getattr(state, key) for state in path] for key in ("indentation", "force"))
-    by_force = end.potential_energy - integrate_curve(depth, force)
-    steps = max(end.work_error - path[0].work_error, abs(by_force - found.unloading_work))
+    steps = end.work_error - path[0].work_error
     spacing = path[0].contact.grid.spacing[0] / path[0].contact.adhesion.coarsest_spacing(
         path[0].contact.pair
     )
@@ -320,22 +318,52 @@ def unloaded(contact, depths, *, share):
     return np.array(found).T
 
 
-@pytest.mark.parametrize("limit", [math.inf, 0.5e9])
-def test_an_elastic_contact_joins_the_unloading_from_a_shallower_depth(limit):
-    """After yield the surfaces differ, so every unloading is computed."""
-    body = Body(radius=5e-6, youngs_modulus=70e9, poissons_ratio=0.17)
+def rough_silica(youngs_modulus, limit=math.inf):
+    body = Body(radius=5e-6, youngs_modulus=youngs_modulus, poissons_ratio=0.17)
     surface = generate_surface(
         Grid(96, 4e-9), kind="gaussian", rms=1e-9, correlation_length=60e-9, seed=1
     )
-    contact = Contact(
+    return Contact(
         Pair(body, body), surface, plasticity=ConstantBound(limit), adhesion=Cohesive(0.05)
     )
-    depths = [0.5e-9, 1.5e-9, 3e-9]
-    joined, alone = (unloaded(contact, depths, share=share) for share in (True, False))
-    assert joined[0] == approx(alone[0], rel=2e-3)
-    assert joined[1] == approx(alone[1], rel=0.02)
+
+
+DEPTHS = (0.5e-9, 1.5e-9, 3e-9)
+
+
+@pytest.mark.parametrize("limit", [math.inf, 0.5e9])
+def test_a_contact_without_jumps_unloads_through_the_states_of_loading(limit):
+    """After yield the surfaces differ, so every unloading is computed."""
+    contact = rough_silica(70e9, limit)
+    found = unloaded(contact, DEPTHS, share=False)
+    state = solve(contact, DEPTHS[-1])
+    afresh = list(unloading_path(replace(state, before=None)))
+    end = collide(state, afresh)
+    assert end.unloading_work == approx(found[0][-1], rel=1e-3)
+    assert end.pull_off_force == approx(found[1][-1], rel=2e-3)
     if math.isinf(limit):
-        assert joined[2][1:].sum() < 0.7 * alone[2][1:].sum()
-        assert np.ptp(joined[1]) < 0.02 * joined[1].max()
+        assert state.jumps == 0
+        assert found[2][-1] < 0.4 * end.convolutions
+        assert np.ptp(found[1]) < 1e-3 * found[1].max()
     else:
-        assert joined[2] == approx(alone[2])
+        assert found[2][-1] == approx(end.convolutions, rel=0.3)
+
+
+def test_a_contact_that_jumped_joins_the_unloading_from_a_shallower_depth():
+    contact = sphere(1.0, 3.0)
+    assert solve(contact, Z0).jumps > 0
+    depths = (Z0, 2 * Z0, 3 * Z0)
+    joined, alone = (unloaded(contact, depths, share=share) for share in (True, False))
+    assert joined[0] == approx(alone[0], rel=1e-6)
+    assert joined[1] == approx(alone[1], rel=1e-6)
+    assert joined[3] == approx(alone[3], rel=1e-6)
+    assert joined[2][1:].sum() < 0.7 * alone[2][1:].sum()
+
+
+def test_a_shallower_state_is_loaded_from_the_path_to_a_deeper_one():
+    contact = rough_silica(70e9, 0.5e9)
+    deep = solve(contact, DEPTHS[-1])
+    state, afresh = solve(contact, DEPTHS[0], start=deep), solve(contact, DEPTHS[0])
+    assert state.force == approx(afresh.force, rel=1e-3)
+    assert state.loading_work == approx(afresh.loading_work, rel=1e-3)
+    assert state.convolutions < 0.5 * afresh.convolutions

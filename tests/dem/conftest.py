@@ -146,6 +146,15 @@ def yade(tmp_path_factory) -> Program:
 
 
 @pytest.fixture(scope="session")
+def kratos() -> Program:
+    """Python with Kratos DEM; it has an environment of its own (`make test-kratos`)."""
+    python = os.environ.get("KRATOS_PYTHON")
+    if python is None:
+        pytest.skip("Kratos DEM runs in an environment of its own: make test-kratos")
+    return Program(python, [], dict(os.environ) | {"OMP_NUM_THREADS": "1"})
+
+
+@pytest.fixture(scope="session")
 def python_with() -> Callable[[str, str], Program]:
     """Python that runs a script with a module of the extra `robotics`; skips where missing."""
 

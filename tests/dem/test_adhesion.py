@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from restitution.dem.export import CODES, export
+from restitution.dem.export import ADHESIVE, CODES, WHOLE, export
 from restitution.dem.pair import pull_off_force
+from restitution.errors import CaseError
 from tolerance import approx
 
 
@@ -28,7 +29,7 @@ def test_pull_off_force_is_interpolated(adhesive, law):
     assert math.isnan(pull_off_force(law(), 1.0))
 
 
-@pytest.mark.parametrize("code", [code for code in CODES if code != "csv"])
+@pytest.mark.parametrize("code", [code for code in CODES if code not in (*WHOLE, *ADHESIVE)])
 def test_every_code_gets_the_force_and_the_reason(adhesive, law, code):
     (*_, notes) = export([adhesive], code, 1.0).values()
     text = " ".join(notes.split())
@@ -48,3 +49,9 @@ def test_the_tables_have_the_force(adhesive, law):
             (row,) = csv.DictReader(line for line in lines if not line.startswith("#"))
             force = row["pull_off_force_N"]
             assert (float(force) if force not in ("", "nan") else None) == asked
+
+
+def test_a_contact_with_adhesion_needs_the_pull_off_force(law):
+    for code in ("c", "python", *ADHESIVE):
+        with pytest.raises(CaseError, match=r'not known.* with unloading.method = "path"'):
+            export([law(work_of_adhesion=0.2)], code, 1.0)

@@ -13,7 +13,7 @@ from restitution import Body, Pair
 from restitution.dem.codes import lammps as to_lammps
 from restitution.dem.codes import liggghts as to_liggghts
 from restitution.dem.codes import yade as to_yade
-from restitution.dem.export import CODES, export
+from restitution.dem.export import ADHESIVE, CODES, export
 from restitution.dem.pair import STIFFNESS_SHARE
 from restitution.dem.pair_table import pair_table
 from restitution.impacts.oblique import collide_obliquely
@@ -120,7 +120,7 @@ def test_yade_rebounds_obliquely_like_the_law(yade, sliding, texts):
             assert said["spin of the first"] == approx(law.spins[0], rel=2e-3)
 
 
-@pytest.mark.parametrize("code", [code for code in CODES if code != "csv"])
+@pytest.mark.parametrize("code", [code for code in CODES if code not in ("csv", *ADHESIVE)])
 def test_the_friction_of_the_case_is_exported(sliding, law, code):
     """Every code gets µ, and says where it comes from; without µ in the case, a placeholder."""
     table = [sliding(friction=0.123), sliding(SMOOTH, SMOOTH, friction=0.321)]

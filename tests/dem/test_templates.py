@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import restitution.dem
-from restitution.dem.export import CODES, export
+from restitution.dem.export import ADHESIVE, CODES, export
 
 TEMPLATES = Path(restitution.dem.__file__).parent / "templates"
 WITHOUT_TEMPLATES = ("csv", "edem")  # tables, written by the csv module
@@ -22,18 +22,22 @@ PARTS = ("mdr.lmp",)  # included by another template
 def exports(law, points, mixed, on_wall):
     """Every file of every code by name, for several tables of laws."""
     adhesive = law(work_of_adhesion=0.2, smooth_sticking_velocity=0.01)
+    pulled = tuple(replace(point, pull_off_force=1e-5) for point in adhesive.points)
+    adhesive = replace(adhesive, points=pulled)
     several = [found for _, _, found in mixed.pairs()]
     cases = {"fitted": [points], "adhesive": [adhesive], "mixed": several}
     found = {
         (case, code, name): text
         for case, laws in cases.items()
         for code in CODES
+        if code not in ADHESIVE or case == "adhesive"
         for name, text in export(laws, code, 1.0).items()
     }
     of_wall = [each for _, _, each in on_wall.pairs()]
     return found | {
         ("wall", code, name): text
         for code in CODES
+        if code not in ADHESIVE
         for name, text in export(of_wall, code, 1.0).items()
     }
 
@@ -79,7 +83,7 @@ def test_scripts_are_python(exports, texts):
         if name.endswith(".py")
     }
     assert {name.split("_")[1] for name in scripts} == {
-        "drake", "lammps", "liggghts", "mujoco", "yade"
+        "drake", "kratos", "lammps", "liggghts", "mujoco", "python", "yade"
     }  # fmt: skip
     for name, text in scripts.items():
         compile(text, name, "exec")
@@ -108,14 +112,14 @@ def mixture(law):
             for k, (one, two) in enumerate(pairs)]  # fmt: skip
 
 
-@pytest.mark.parametrize("code", [code for code in CODES if code != "csv"])
+@pytest.mark.parametrize("code", [code for code in CODES if code not in ("csv", *ADHESIVE)])
 def test_commands_come_first_and_equal_warnings_once(mixture, code):
     for name, text in export(mixture, code, 1.0).items():
         assert text.count("WARNING:") == 1, name
         assert "WARNING: all pairs: the grid is coarse at 0 depths (with other" in text, name
         if name.endswith(".txt"):
             continue
-        sign = "//" if name.endswith(".h") else "#"
+        sign = "//" if name.endswith((".h", ".c")) else "#"
         lines = [line for line in _without_xml_comments(text).splitlines() if line.strip()]
         words = [line for line in lines if not line.lstrip().startswith(sign)]
         assert lines.index(words[0]) < 10, name

@@ -219,3 +219,11 @@ def scaled(law, V, pair):
     """The velocity at which `law` has the work over R*³ of the pair, within its range."""
     velocity = V * np.sqrt(pair.mass / pair.radius**3 / (law.mass / law.radius**3))
     return min(max(velocity, law.lowest), law.highest)
+
+
+def test_pairs_with_a_wall_lose_energy_to_waves(computed_mixture):
+    for law in read_laws([computed_mixture]):
+        for point in law.points:
+            assert point.factors["plate"] == point.factors["viscosity"] == 1.0
+            assert point.quasi_static * point.factors["waves"] == approx(point.restitution)
+        assert law.losses == (("waves",) if law.second.wall else ())

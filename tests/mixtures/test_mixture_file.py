@@ -133,6 +133,16 @@ def test_a_pair_may_have_an_interface_of_its_own(mixture_text):
         ('rms = "0.05 um"', 'rms = "0.05"', "materials.alu.roughness.rms"),
         ("seed = 1", 'seed = "one"', "materials.alu.roughness.seed"),
         ('radius = "100 um"', 'radius = "100 um"\nroughness = "fine"', "materials.pmma.roughness"),
+        (
+            'radius = "100 um"',
+            'radius = "100 um"\nrelaxation_time = "1 us"',
+            "materials.pmma.relaxation_time: is not used in a mixture",
+        ),
+        (
+            'radius = "100 um"',
+            'radius = "100 um"\nthickness = "1 mm"',
+            "materials.pmma.thickness: belongs to a wall",
+        ),
     ],
 )
 def test_what_is_refused(mixture_text, old, new, words):
@@ -140,6 +150,16 @@ def test_what_is_refused(mixture_text, old, new, words):
         families(parse_mixture(mixture_text((old, new))))
     assert words in str(refused.value)
     assert "\n" not in str(refused.value)
+
+
+def test_a_wall_has_a_thickness_and_all_have_internal_friction(mixture_text):
+    sheet = ('material = "steel"', 'material = "steel"\nthickness = "1 mm"')
+    soft = ('material = "pmma"', 'material = "pmma"\nloss_tangent = 0.05')
+    walls = [one for one in families(parse_mixture(mixture_text(sheet, soft))) if one.second.wall]
+    losses = {one.first.name: parse_case(one.case(one.radii[0])).losses() for one in walls}
+    assert losses["alu"].plate.thickness == losses["pmma"].plate.thickness == 1e-3
+    assert losses["alu"].viscosity is None
+    assert losses["pmma"].damping(1e-6).time > 0
 
 
 def test_no_two_surfaces_of_a_pair_have_the_same_seed(mixture_text):

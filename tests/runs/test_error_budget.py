@@ -297,7 +297,7 @@ def test_converge_states_no_zero_error(case_text, tmp_path):
 
 TWIN = """
 first = {{ material = "glass", radius = "500 um" }}
-second = "steel"
+second = {{ material = "steel", radius = "flat", yield_strength = "2030 MPa" }}
 [roughness]
 kind = "measured"
 file = "{file}"
@@ -350,8 +350,9 @@ def test_a_scan_has_places(scan, tmp_path):
 def test_another_body_may_be_the_softer_one_at_an_end_of_the_spread(tmp_path):
     """At the low ends of the spread glass is softer than steel and yields at its hardness."""
     text = (
-        'first = { material = "steel", radius = "500 um" }\nsecond = "glass"\n[interface]\n'
-        'plasticity = "expanding-cavity"\n[grid]\nnodes = 64\nspacing = "3 um"\n'
+        'first = { material = "steel", radius = "500 um", yield_strength = "2030 MPa" }\n'
+        'second = "glass"\n[interface]\nplasticity = "expanding-cavity"\n'
+        '[grid]\nnodes = 64\nspacing = "3 um"\n'
         '[indentation]\nvalues = ["8 um"]\n'
     )
     rows, _ = run(text, tmp_path / "out")

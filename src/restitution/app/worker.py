@@ -1,7 +1,7 @@
 """The process that computes for the page: it answers one `Request` after the other.
 
 An answer is a series of lines of JSON, then None. A new request replaces an older one of the same
-kind and browser tab, and a new curve every request of its tab, at its next depth.
+kind and browser tab, and a new curve every request of its tab, at once: it interrupts the solve.
 """
 
 from __future__ import annotations
@@ -10,12 +10,13 @@ import os
 import signal
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import partial
 from multiprocessing.connection import Connection
 from pathlib import Path
 from tempfile import mkdtemp
+from types import FrameType
 from typing import Any
 
 from restitution.app.content import problems_in
@@ -25,6 +26,7 @@ from restitution.app.runs import Runs, results_line
 from restitution.errors import RestitutionError, one_line
 
 REPLACED = as_json({"replaced": True})
+_REPEAT_AFTER = 0.05  # time (s) after which an interrupt that came during an import comes again
 
 
 @dataclass(frozen=True)
@@ -50,12 +52,19 @@ class Inbox:
         self._now: Request | None = None
         self._given_up: set[int] = set()
         self._changed = threading.Condition()
+        self._can_stop = False  # whether `_interrupt` raises; only the main thread changes it
+        # Ctrl-C reaches every process of the terminal. It is ignored, because the parent ends this
+        # process; the thread sends the same signal to interrupt a solve.
+        signal.signal(signal.SIGINT, self._interrupt)
         threading.Thread(target=self._listen, daemon=True).start()
 
     def send(self, number: int, line: str | None) -> None:
         """Send a line of the answer to request `number`, or None at its end."""
-        with self._sending:
-            self._connection.send((number, line))
+        can_stop, self._can_stop = self._can_stop, False
+        self._put(number, line)
+        self._can_stop = can_stop
+        if can_stop:
+            self.check()
 
     def next(self) -> Request:
         """Wait for a request, and return the one that has waited longest."""
@@ -66,14 +75,45 @@ class Inbox:
             self._given_up.clear()  # numbers of earlier requests, which are all answered
             return self._now
 
-    def check(self) -> None:
-        """Raise `NotWanted` if the request that `next` returned last is no longer wanted."""
+    @property
+    def wanted(self) -> bool:
+        """Whether the request that `next` returned last is still wanted."""
         with self._changed:
             now = self._now
-            assert now is not None
+            if now is None:
+                return False
             newer = {(now.tab, now.kind), (now.tab, "curve")}
-            if now.number in self._given_up or newer & self._waiting.keys():
-                raise NotWanted
+            return now.number not in self._given_up and not newer & self._waiting.keys()
+
+    def check(self) -> None:
+        """Raise `NotWanted` if the request that `next` returned last is no longer wanted."""
+        if not self.wanted:
+            raise NotWanted
+
+    @contextmanager
+    def stoppable(self) -> Iterator[None]:
+        """Raise `NotWanted` in the `with` body as soon as its request is no longer wanted."""
+        self._can_stop = True
+        try:
+            self.check()
+            yield
+        finally:
+            self._can_stop = False
+
+    def _interrupt(self, number: int, frame: FrameType | None) -> None:
+        if not self._can_stop or self.wanted:
+            return
+        if _imports(frame):  # an import that is interrupted can leave a module that is unusable
+            again = threading.Timer(_REPEAT_AFTER, signal.raise_signal, (number,))
+            again.daemon = True
+            again.start()
+            return
+        self._can_stop = False
+        raise NotWanted
+
+    def _put(self, number: int, line: str | None) -> None:
+        with self._sending:
+            self._connection.send((number, line))
 
     def _listen(self) -> None:
         """Receive new requests and numbers of requests given up, until the parent process ends."""
@@ -92,12 +132,22 @@ class Inbox:
                     for key in [k for k, other in self._waiting.items() if other.number == message]:
                         self._drop(key)
                 self._changed.notify_all()
+            if not self.wanted:
+                signal.raise_signal(signal.SIGINT)
 
     def _drop(self, key: tuple[str, str]) -> None:
         dropped = self._waiting.pop(key, None)
         if dropped is not None:
-            self.send(dropped.number, REPLACED)
-            self.send(dropped.number, None)
+            self._put(dropped.number, REPLACED)
+            self._put(dropped.number, None)
+
+
+def _imports(frame: FrameType | None) -> bool:
+    while frame is not None:
+        if frame.f_code.co_filename.startswith("<frozen importlib"):
+            return True
+        frame = frame.f_back
+    return False
 
 
 class Worker:
@@ -181,8 +231,6 @@ _NEEDED = {
 
 def serve(connection: Connection, scans: Path, room: Path) -> None:
     """Answer requests until the parent process closes the connection or ends."""
-    # Ctrl-C reaches every process of the terminal. Ignore it, because the parent ends this process.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.environ["MPLBACKEND"] = "agg"
     inbox = Inbox(connection)
     worker = Worker(scans, room, inbox.check)
@@ -190,7 +238,8 @@ def serve(connection: Connection, scans: Path, room: Path) -> None:
         request = inbox.next()
         send = partial(inbox.send, request.number)
         try:
-            worker.answer(request, send)
+            with inbox.stoppable():
+                worker.answer(request, send)
         except NotWanted:
             send(REPLACED)
         except RestitutionError as error:
@@ -199,6 +248,8 @@ def serve(connection: Connection, scans: Path, room: Path) -> None:
             send(as_json({"error": "the memory is too small for this case; use fewer grid.nodes"}))
         except Exception as error:
             words = one_line(f"{type(error).__name__}: {error}")
-            send(as_json({"error": f"stopped by an unexpected error, {words}"}))
+            unexpected = as_json({"error": f"stopped by an unexpected error, {words}"})
+            # Compiled code can turn an interrupt into another error.
+            send(unexpected if inbox.wanted else REPLACED)
         with suppress(BrokenPipeError):
             send(None)

@@ -3,19 +3,28 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
-from pydantic import BeforeValidator, model_validator
+from pydantic import (
+    BeforeValidator,
+    Field,
+    ModelWrapValidatorHandler,
+    PrivateAttr,
+    model_validator,
+)
 
+from restitution.case.hardness import converted, ratio_of, strength
 from restitution.case.materials import Material, PoissonsRatio, Property, material, materials
 from restitution.case.quantities import (
     Density,
     Length,
     Pressure,
+    Time,
 )
 from restitution.case.rulebook import Input, key, rules
 from restitution.case.schema import Table
 from restitution.contact.bodies import Body
+from restitution.losses.viscosity import Friction
 
 _REQUIRED = ("youngs_modulus", "poissons_ratio")  # keys that every body needs
 
@@ -55,14 +64,54 @@ class BodyTable(Table):
     )
     yield_strength: Pressure | None = key(
         None,
-        "yield strength Y from a tensile test. The keys of `[interface]` below say how it is used",
-        page=Input("Yield strength Y", slider=(1e6, 1e11), more=True),
+        'yield strength Y from a tensile test, or `"H/2.8"` from the [hardness](materials.md) of a '
+        "metal. The keys of `[interface]` below say how it is used",
+        page=Input(
+            "Yield strength Y",
+            hint='of a tensile test, or "H/2.8" of the hardness',
+            slider=(1e6, 1e11),
+            more=True,
+        ),
     )
     hardness: Pressure | None = key(
         None,
         "indentation hardness, used where the yield strength is unknown",
         page=Input("Hardness H", slider=(1e6, 1e11), more=True),
     )
+    thickness: Length | None = key(
+        None,
+        "of a wall, for the [bending waves](losses.md) that the impact sends into it; the wall "
+        "needs a density",
+        default="infinite",
+        page=Input("Thickness", hint="of a wall; if empty, thick", slider=(1e-4, 1.0), more=True),
+    )
+    loss_tangent: Annotated[float, Field(ge=0, le=1)] | None = key(
+        None,
+        "tan δ, [internal friction](losses.md) at the frequency 1/(2T) of an impact of duration T",
+        default="0",
+        page=Input("Loss tangent tan δ", slider=(0.0, 1.0), more=True),
+    )
+    relaxation_time: Time | None = key(
+        None,
+        "viscosity over modulus, instead of `loss_tangent`",
+        default='`"0 s"`',
+        page=Input("Relaxation time", slider=(1e-9, 1.0), more=True),
+    )
+
+    _ratio: float | None = PrivateAttr(default=None)
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _with_strength(cls, value: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        """Read `yield_strength = "H/2.8"`, and remember the ratio."""
+        if not isinstance(value, dict) or (ratio := ratio_of(value.get("yield_strength"))) is None:
+            return handler(value)
+        hardness, name = value.get("hardness"), value.get("material")
+        if hardness is None and isinstance(name, str) and (known := material(name).hardness):
+            hardness = f"{known.value!r} Pa"
+        table = handler({**value, "yield_strength": converted(hardness, ratio)})
+        table._ratio = ratio
+        return table
 
     @model_validator(mode="before")
     @classmethod
@@ -85,21 +134,52 @@ class BodyTable(Table):
         }
         return {**taken, **table, "material": known.key}
 
+    @model_validator(mode="after")
+    def _with_losses(self) -> Self:
+        if self.thickness is not None and self.radius is not None:
+            raise ValueError(
+                "thickness: belongs to a wall, but this body is a sphere; remove thickness, or "
+                'write radius = "flat"'
+            )
+        if self.loss_tangent is not None and self.relaxation_time is not None:
+            raise ValueError(
+                "loss_tangent, relaxation_time: both describe the internal friction; remove one"
+            )
+        if self.thickness is not None and self.density is None:
+            raise ValueError("density: is missing; give it, because thickness needs the mass")
+        return self
+
+    @property
+    def friction(self) -> Friction:
+        """Internal friction of the body."""
+        return Friction(self.relaxation_time or 0.0, self.loss_tangent or 0.0)
+
     def body(self) -> Body:
         """Make the body that this table describes."""
         radius = math.inf if self.radius is None else self.radius
         return Body(radius, self.youngs_modulus, self.poissons_ratio, self.density)
 
     def from_library(self) -> dict[str, Property[Any]]:
-        """Return the values taken from the materials library, with their spread and source."""
-        if self.material is None:
-            return {}
-        known = material(self.material)
-        return {
-            key: supplied
-            for key in FROM_LIBRARY
-            if (supplied := getattr(known, key)) and supplied.value == getattr(self, key)
-        }
+        """Return the values taken from the library or converted, with their spread and source."""
+        values: dict[str, Property[Any]] = {}
+        if self.material is not None:
+            known = material(self.material)
+            values = {
+                key: supplied
+                for key in FROM_LIBRARY
+                if (supplied := getattr(known, key)) and supplied.value == getattr(self, key)
+            }
+        if self._ratio is not None and self.hardness is not None:
+            own = strength(self.hardness, self._ratio)
+            values |= {"yield_strength": own} if own.value == self.yield_strength else {}
+        return values
+
+    @property
+    def strength_in_words(self) -> str:
+        """The yield strength, and how it follows from the hardness."""
+        words = f"{1e-6 * (self.yield_strength or math.nan):.6g} MPa"
+        known = self.from_library().get("yield_strength")
+        return f"{words} ({known.conversion})" if known and known.conversion else words
 
 
 # Keys of a body that the materials library can supply, with their SI units.

@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal, cast
 from pydantic import BeforeValidator, model_validator
 
 from restitution.case import needs
+from restitution.case.below_grid import Splitting, split_surface, splitting_of
 from restitution.case.bodies import BodyTable
 from restitution.case.impacts import MOST_IMPACTS, ImpactsTable
 from restitution.case.interface import InterfaceTable, Yielding
@@ -22,12 +23,19 @@ from restitution.contact.bodies import Pair
 from restitution.contact.cohesive.law import Cohesive
 from restitution.contact.contact import Contact, smooth
 from restitution.contact.models import Adhesion as AdhesionModel
+from restitution.contact.patch.law import PatchAttraction, PatchRepulsion
 from restitution.display import quantity
 from restitution.errors import CaseError, SurfaceError
+from restitution.losses.half_space import HalfSpace
+from restitution.losses.losses import Losses
+from restitution.losses.plate import Plate
+from restitution.losses.viscosity import Friction, Viscosity
 from restitution.numerics.grid import Grid
 from restitution.repeated.run_in import nominal_area
 from restitution.surfaces import Surface, composite
 from restitution.surfaces.refine import divided
+from restitution.surfaces.split import SplitSurface
+from restitution.theory import ThorntonNing
 
 # Smallest width of a grid with [impacts], in diameters of the contact of smooth bodies.
 _WIDEST = 1.6
@@ -187,6 +195,12 @@ class Case(Table):
         for name, body in self.bodies().items():
             if body.radius is not None:
                 raise ValueError(f'{name}.radius: must be "flat" if the grid is periodic')
+            for loss in ("thickness", "loss_tangent", "relaxation_time"):
+                if getattr(body, loss) is not None:
+                    raise ValueError(
+                        f"{name}.{loss}: acts in impacts only, and a periodic contact has none; "
+                        "remove it"
+                    )
         if self.impact is not None:
             raise ValueError(
                 "[impact]: the bodies of a periodic contact have infinite mass; give "
@@ -350,27 +364,88 @@ class Case(Table):
             )
         return pair
 
+    def losses(self) -> Losses:
+        """Losses besides yielding and adhesion; a wall without density has no waves."""
+        tables = self.bodies().values()
+        pair = self.pair()
+        wall = next((table for table in tables if table.radius is None), None)
+        plate = waves = None
+        if wall is not None and wall.density is not None:
+            material = wall.youngs_modulus, wall.poissons_ratio, wall.density
+            waves = HalfSpace(*material)
+            plate = None if wall.thickness is None else Plate(wall.thickness, *material)
+        bodies = tuple(
+            (
+                table.friction,
+                pair.contact_modulus * (1 - table.poissons_ratio**2) / table.youngs_modulus,
+            )
+            for table in tables
+        )
+        viscous = any(friction != Friction() for friction, _ in bodies)
+        return Losses(plate, waves, Viscosity(bodies) if viscous else None)
+
     def yielding(self) -> Yielding:
         """The yield model of the contact. Raises `CaseError` if a value for it is missing."""
         return self.interface.yielding(**self.bodies())
 
+    def deepest_indentation(self) -> float:
+        """The deepest indentation (m), by `indentation_at`."""
+        return self.indentation_at(self.depths()[-1])
+
+    def indentation_at(self, depth: float) -> float:
+        """The indentation (m) at `depth`, one of `depths`: m, N, m/s or Pa.
+
+        Without [indentation], that of smooth Thornton–Ning bodies; NaN for a periodic case.
+        """
+        pair = self.pair()
+        if self.indentation is not None:
+            return depth
+        if self.periodic:
+            return math.nan
+        # The yield pressure p_y of elastic bodies is infinite, but ThorntonNing needs a finite
+        # value. Use the contact modulus, a pressure that no contact reaches.
+        p_y = min(self.yielding().hardness, pair.contact_modulus)
+        smooth = ThorntonNing(pair.radius, pair.contact_modulus, p_y)
+        if self.load is not None:
+            return float(smooth.indentation(depth))
+        assert pair.mass is not None  # checked by _check_masses
+        return float(smooth.indentation_from_velocity(depth, pair.mass))
+
+    @property
+    def can_split(self) -> bool:
+        """Whether the models and surfaces of the case are defined with waves below the grid."""
+        interface = self.interface
+        jkr = interface.adhesion == "jkr" or interface.needs_jkr
+        if self.periodic or (interface.adhesive_energy and jkr):
+            return False
+        normal = all(part.is_normal for part in self.roughness)
+        return normal and self.yielding().model.bounds_solve
+
+    def splitting(self, folder: Path) -> Splitting | None:
+        """How waves below the grid are put into patches; None if they are not."""
+        return splitting_of(self, folder)
+
     def surface(self, folder: Path) -> Surface:
-        """Make the composite roughness on the grid; file names are relative to `folder`."""
+        """Make the composite roughness on the grid; file names are relative to `folder`.
+
+        With waves below the grid, it is a `SplitSurface`.
+        """
         grid, factor = self.grid.grid(), self.grid.factor
         if grid is None:
             (scan,) = cast(tuple[MeasuredRoughness], self.roughness)  # `_whole` requires one scan
             return scan.surface(None, folder, factor)
         if not self.roughness:
             return smooth(divided(grid, factor))
-        parts = []
+        parts, how = [], self.splitting(folder)
         for number, part in enumerate(self.roughness, 1):
             try:
-                parts.append(part.surface(grid, folder, factor))
+                parts.append(part.surface(grid, folder, factor, patches=how is not None))
             except SurfaceError as error:
                 if len(self.roughness) == 1:
                     raise
                 raise SurfaceError(f"table {number} of [[roughness]]: {error}") from error
-        return composite(parts)
+        whole = composite(parts)
+        return whole if how is None else split_surface(self, folder, whole, how)
 
     def contact(self, folder: Path) -> Contact:
         """Make the unloaded contact of the case; file names are relative to `folder`.
@@ -390,9 +465,17 @@ class Case(Table):
             self.pair(),
             surface,
             **self.yielding().arguments(),
-            adhesion=self.adhesion_on(surface.grid),
+            adhesion=self._interface_on(surface),
             periodic=self.periodic,
         )
+
+    def _interface_on(self, surface: Surface) -> AdhesionModel | None:
+        if not isinstance(surface, SplitSurface):
+            return self.adhesion_on(surface.grid)
+        w, z0 = self.interface.adhesive_energy, self.interface.equilibrium_separation
+        if w == 0:
+            return PatchRepulsion(surface.patches, surface.wavelength)
+        return PatchAttraction(surface.patches, surface.wavelength, Cohesive(w, z0))
 
     def adhesion_on(self, grid: Grid) -> AdhesionModel | None:
         """The model of adhesion on `grid`; None without adhesion."""

@@ -7,27 +7,12 @@ import math
 from restitution.case.case import Case
 from restitution.contact.checks.resolution import predicted_radius
 from restitution.contact.contact import Contact
-from restitution.theory import JKR, FirstYield, ThorntonNing
+from restitution.theory import JKR, FirstYield
 
 
 def deepest_indentation(case: Case) -> float:
-    """The deepest indentation (m); without [indentation], that of smooth Thornton–Ning bodies.
-
-    NaN for a periodic case without [indentation].
-    """
-    last, pair = case.depths()[-1], case.pair()
-    if case.indentation is not None:
-        return last
-    if case.periodic:
-        return math.nan
-    # The yield pressure p_y of elastic bodies is infinite, but ThorntonNing needs a finite value.
-    # Use the contact modulus, a pressure that no contact reaches.
-    p_y = min(case.yielding().hardness, pair.contact_modulus)
-    smooth = ThorntonNing(pair.radius, pair.contact_modulus, p_y)
-    if case.load is not None:
-        return float(smooth.indentation(last))
-    assert pair.mass is not None  # checked by Case._check_masses
-    return float(smooth.indentation_from_velocity(last, pair.mass))
+    """The deepest indentation (m), by `Case.indentation_at`."""
+    return case.deepest_indentation()
 
 
 def derived_quantities(case: Case, contact: Contact) -> dict[str, float | None]:
@@ -80,7 +65,7 @@ def _of_period(contact: Contact) -> dict[str, float | None]:
 
 def _adhesion(case: Case, contact: Contact) -> dict[str, float | None]:
     adhesion = contact.adhesion
-    if adhesion is None:
+    if adhesion is None or not adhesion.attracts:
         return {}
     pair, w = contact.pair, adhesion.work_of_adhesion
     smooth = JKR(pair.radius, pair.contact_modulus, w)

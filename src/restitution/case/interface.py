@@ -230,7 +230,7 @@ class InterfaceTable(Table):
         if self.yield_strength is not None:
             return self._growing(self.yield_strength, "given")
         known = [
-            (Y, f"Y of {_named(name, body)}, {1e-6 * Y:.6g} MPa")
+            (Y, f"Y of {_named(name, body)}, {body.strength_in_words}")
             for name, body in (("first", first), ("second", second))
             if (Y := body.yield_strength) is not None
         ]
@@ -270,7 +270,9 @@ class InterfaceTable(Table):
             whose = f"of {_named(name, body)}"
             if quantity == "yield_strength" and body.yield_strength is not None:
                 Y = body.yield_strength
-                pressures.append((factor * Y, f"{factor:g} Y {whose}, Y = {1e-6 * Y:.6g} MPa"))
+                pressures.append(
+                    (factor * Y, f"{factor:g} Y {whose}, Y = {body.strength_in_words}")
+                )
             elif body.hardness is not None:
                 pressures.append(
                     (body.hardness, f"hardness {whose}, {1e-6 * body.hardness:.6g} MPa")

@@ -36,7 +36,8 @@ class Property(Table, Generic[Quantity]):
     """One quantity of a material, in SI units.
 
     `low` and `high` are the extremes in the sources, for any grade. `verified` means that `value`
-    was read in the source, or computed from values read there.
+    was read in the source, or computed from values read there. `conversion` says how `value`
+    follows from another quantity.
     """
 
     value: Quantity
@@ -44,6 +45,7 @@ class Property(Table, Generic[Quantity]):
     high: Quantity
     source: Text
     verified: bool
+    conversion: str = ""
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:

@@ -52,6 +52,7 @@ QUANTITIES = {  # by SI unit
     ),
     "rad": Quantity("an angle", "30 deg", "deg rad"),
     "rad/s": Quantity("a spin", "100 rad/s", "rad/s deg/s rpm"),
+    "s": Quantity("a time", "10 us", "s ms us µs ns", (1e-15, 1e6)),
     "m/s": Quantity("a velocity", "0.5 m/s", "m/s cm/s mm/s um/s km/h", (1e-9, 1e4)),
 }
 # Names of units of angle; the unit of a spin must contain one of them.
@@ -194,6 +195,7 @@ Density = Annotated[float, Unit("kg/m^3")]
 SurfaceEnergy = Annotated[float, Unit("J/m^2", partial(read_positive, or_zero=True))]
 Force = Annotated[float, Unit("N")]
 Velocity = Annotated[float, Unit("m/s")]
+Time = Annotated[float, Unit("s")]
 Angle = Annotated[float, Unit("rad", read_quantity)]
 ImpactAngle = Annotated[float, Unit("rad", lambda value, _: read_impact_angle(value))]
 Spin = Annotated[float, Unit("rad/s", read_quantity)]

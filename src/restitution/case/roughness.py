@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from restitution.case import needs
+from restitution.case.below_grid import BELOW_GRID, SPLIT, BelowGrid
 from restitution.case.quantities import Angle, Length, Position
 from restitution.case.rulebook import Input, Key, key
 from restitution.case.schema import PairOf, Table
@@ -29,18 +32,22 @@ from restitution.surfaces import (
 from restitution.surfaces.cache import kept
 from restitution.surfaces.defects import noted
 from restitution.surfaces.extend import Extension
-from restitution.surfaces.generate import WAVES, RoughnessKind
+from restitution.surfaces.generate import WAVES, RoughnessKind, Waves, spectrum_of_kind
 from restitution.surfaces.level import Levelling
 from restitution.surfaces.reading.scan import UNITS, in_metres
 from restitution.surfaces.refine import divided
 from restitution.surfaces.refused import Code, RefusedSurfaceError
 from restitution.surfaces.shift import note_mirrored_part, place_of
+from restitution.surfaces.split import Bands, long_waves
+from restitution.surfaces.surface import Array
 from restitution.surfaces.twin import LEAST_PIXELS
 
 MOST_REALISATIONS = 1000
 # Largest value of the key `place`. It is the number of a point in a fixed sequence (see
 # `surfaces.shift`). The scan is moved so that this point is in the middle.
 MOST_PLACES = 10_000
+PER_WAVE = 6  # cells of a patch per shortest wave of a generated surface
+PATCH_SEED = 2_718_281  # all surfaces of one kind share their patches, and so their law
 
 # Key of the case file for each argument of `crop` and `remove_outliers`.
 _CLEANING_KEYS = {
@@ -182,17 +189,26 @@ class GeneratedRoughness(Table):
         ),
     )
 
+    below_grid: BelowGrid | None = key(None, BELOW_GRID)
+    split: Length | None = key(None, SPLIT)
+
     def variant(self, number: int) -> Self:
         """Return the table of a single surface, with the seed increased by `number`."""
         return self.model_copy(update={"seed": self.seed + number, "realisations": 1})
 
-    def surface(self, grid: Grid, _: Path, factor: int = 1) -> Surface:
-        """Generate the surface on `grid` and interpolate it to cells `factor` times smaller."""
+    def surface(self, grid: Grid, _: Path, factor: int = 1, *, patches: bool = False) -> Surface:
+        """Generate the surface on `grid` and interpolate it to cells `factor` times smaller.
+
+        With `patches`, waves below the grid are left to them.
+        """
         fine = divided(grid, factor)
-        normal = (self.skewness, self.kurtosis) == (0.0, 3.0)
-        needed = needs.generated_bytes(grid, normal=normal, periodic=self.periodic)
+        needed = needs.generated_bytes(grid, normal=self.is_normal, periodic=self.periodic)
         needs.require(max(needed, needs.generated_bytes(fine, normal=True, periodic=True)), fine)
-        waves = self.model_dump(exclude={"realisations"})
+        waves = self.model_dump(exclude={"realisations", "below_grid", "split"})
+        if patches and self.needs_patches(grid):
+            waves |= {"shortest": None, "rms": self.rms * self._bands(grid).share()}
+            if self.kind == "self-affine":
+                waves["shortest"] = 2 * max(grid.spacing)
         made_from = {
             "generated": waves,
             "nodes": grid.nodes,
@@ -201,6 +217,41 @@ class GeneratedRoughness(Table):
         }
         with _naming({argument: f"roughness.{argument}" for argument in waves}):
             return kept(made_from, lambda: refine(generate_surface(grid, **waves), factor))
+
+    @property
+    def is_normal(self) -> bool:
+        """Whether the heights of patches have the distribution of the surface."""
+        return (self.skewness, self.kurtosis) == (0.0, 3.0)
+
+    def _bands(self, grid: Grid) -> Bands:
+        waves: Any = {name: getattr(self, name) for name in Waves.__annotations__}
+        shortest = self.shortest or 2 * max(grid.spacing)
+        return Bands(spectrum_of_kind(self.kind, waves), grid, shortest)
+
+    def needs_patches(self, grid: Grid) -> bool:
+        """Whether `shortest` is a wave that `grid` cannot represent."""
+        shortest = self.shortest or math.inf
+        return self.is_normal and shortest < 2 * max(grid.spacing) * (1 - 1e-9)
+
+    def shortest_wave(self, grid: Grid, folder: Path) -> float:
+        """Length (m) of the shortest wave of the surface."""
+        return self.shortest or 2 * max(grid.spacing)
+
+    def patch_cell(self, grid: Grid, folder: Path) -> float:
+        """Cell (m) that resolves the shortest wave in a patch."""
+        return self.shortest_wave(grid, folder) / PER_WAVE
+
+    def of_patches(self) -> Self:
+        """The table whose patches all surfaces of this kind share."""
+        return self.model_copy(update={"seed": PATCH_SEED, "realisations": 1})
+
+    def patch_room(self, folder: Path) -> float:
+        """Largest edge (m) of a window with short waves."""
+        return math.inf
+
+    def short_waves(self, window: Grid, wavelength: float, grid: Grid, folder: Path) -> Array:
+        """Heights (m) of the waves shorter than `wavelength` (m) on `window`."""
+        return self._bands(grid).short_waves(window, wavelength, self.rms, self.seed)
 
 
 class CropTable(Table):
@@ -309,6 +360,9 @@ class MeasuredRoughness(Table):
             raise ValueError('extend = "twin" makes a random surface and needs a seed; give a seed')
         return self
 
+    below_grid: BelowGrid | None = key(None, BELOW_GRID)
+    split: Length | None = key(None, SPLIT)
+
     def variant(self, number: int) -> Self:
         """The table of a single surface: `number` is added to the seed of a twin, or to `place`."""
         if self.seed is None:  # the surface is not a twin
@@ -332,14 +386,50 @@ class MeasuredRoughness(Table):
         # properties of the whole scan.
         return place_of(noted(level(scan, self.detrend)), self.place)
 
-    def surface(self, grid: Grid | None, folder: Path, factor: int = 1) -> Surface:
+    @property
+    def is_normal(self) -> bool:
+        """True: patches have the heights of the scan."""
+        return True
+
+    def needs_patches(self, grid: Grid) -> bool:
+        """False: without patches, the waves below `grid` are left out."""
+        return False
+
+    def shortest_wave(self, grid: Grid, folder: Path) -> float:
+        """Length (m) of the shortest wave of the scan."""
+        return 2 * self.patch_cell(grid, folder)
+
+    def patch_cell(self, grid: Grid, folder: Path) -> float:
+        """The smaller edge (m) of a pixel."""
+        return min(self._unmoved(folder).grid.spacing)
+
+    def of_patches(self) -> Self:
+        """The table whose patches all surfaces of this kind share."""
+        seed = None if self.seed is None else PATCH_SEED
+        return self.model_copy(update={"seed": seed, "place": 0, "realisations": 1})
+
+    def patch_room(self, folder: Path) -> float:
+        """Edge (m) of the largest square window with short waves."""
+        return min(self._unmoved(folder).grid.size) if self.extend is None else math.inf
+
+    def short_waves(self, window: Grid, wavelength: float, grid: Grid, folder: Path) -> Array:
+        """Heights (m) of the waves shorter than `wavelength` (m) on `window`."""
+        whole = self.surface(window, folder)
+        return whole.height - long_waves(whole, wavelength).height
+
+    def _unmoved(self, folder: Path) -> Surface:
+        return _scan_of(self.model_copy(update={"seed": None, "place": 0}), str(folder))
+
+    def surface(
+        self, grid: Grid | None, folder: Path, factor: int = 1, *, patches: bool = False
+    ) -> Surface:
         """Make the roughness on cells `factor` times smaller than those of `grid` or the scan."""
         scan = self.scan(folder)
         grid = grid or scan.grid
         whole = divided(grid, factor)
         needs.require(needs.measured_bytes(whole, scan.grid, twin=self.extend == "twin"), whole)
         made_from = {
-            "measured": self.model_dump(exclude={"realisations"}),
+            "measured": self.model_dump(exclude={"realisations", "below_grid", "split"}),
             "path": str(folder / self.file),
             "sha256": scan.provenance["file_sha256"],
             "nodes": grid.nodes,
@@ -380,6 +470,11 @@ class MeasuredRoughness(Table):
         ):
             steps *= 2
         return steps
+
+
+@lru_cache(maxsize=8)
+def _scan_of(part: MeasuredRoughness, folder: str) -> Surface:
+    return part.scan(Path(folder))
 
 
 Roughness = Annotated[GeneratedRoughness | MeasuredRoughness, Field(discriminator="kind")]

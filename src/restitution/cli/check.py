@@ -6,15 +6,19 @@ from pathlib import Path
 
 from rich.table import Column, Table
 
+from restitution.case.below_grid import notice_of
 from restitution.case.case import Case
 from restitution.case.case_file import naming, parse_case, parse_toml, read_text
 from restitution.case.derived import deepest_indentation, derived_quantities
 from restitution.case.omissions import default_yield
 from restitution.cli.console import command, errors, print_numbers, say, say_next, warn
 from restitution.contact.contact import Contact
+from restitution.contact.patch.law import law_of_patches
 from restitution.numerics.memory import available, in_words
+from restitution.runs.losses import loss_information, loss_warnings
 from restitution.runs.messages import failure_at_edge, input_warnings, no_range, require_possible
 from restitution.runs.refinement import least_refined
+from restitution.runs.two_scales import cost_in_words
 from restitution.surfaces import describe
 from restitution.sweeps.sweep import parse_study
 
@@ -56,12 +60,19 @@ def check(case: Path) -> None:
     print_numbers(table)
     if information := default_yield(read.yielding().source):
         say(information)
+    if not read.periodic and (information := loss_information(read)):
+        say(information)
     deepest = deepest_indentation(read)
     require_possible(contact, deepest)
     with errors.status("checking the surface"):
         warnings += input_warnings(contact, deepest, read.prescribed)
+        warnings += [] if read.periodic else loss_warnings(read)
         if read.interface.adhesion is None and contact.adhesive:
             warnings += no_range(contact)
+        if (notice := notice_of(read, case.parent)) is not None:
+            warnings.append(notice)
+    if law := law_of_patches(contact):
+        say(cost_in_words(law))
     for warning in warnings:
         warn(warning)
     ending = ", with warnings." if warnings else "."

@@ -31,7 +31,7 @@ from restitution.cli.console import (
 from restitution.cli.parameters import DeviceName, FigureFormat
 from restitution.cli.signals import received
 from restitution.contact.checks.findings import CLEANING
-from restitution.curve.curve import largest_part
+from restitution.curve.curve import largest_part, loses
 from restitution.curve.periodic import PeriodicPoint
 from restitution.curve.point import MeanPoint, Point
 from restitution.display import quantity
@@ -47,6 +47,7 @@ from restitution.runs.attraction import in_words
 from restitution.runs.convergence import run_convergence
 from restitution.runs.ensemble import run_realisations
 from restitution.runs.error_budget import steps
+from restitution.runs.losses import loss_information
 from restitution.runs.run_in import sequences
 
 # If the total error of COR is at least this value at any depth, the name of the largest part of the
@@ -93,7 +94,9 @@ def _run(
     with on_device(device.value), locked(out):
         folder = ResultsFolder(out)
         say(f"Results go to {out}", errors)
-        if information := default_yield(read.yielding().source):
+        with naming(case):
+            losses = "" if read.periodic else loss_information(read)
+        for information in filter(None, (default_yield(read.yielding().source), losses)):
             say(information, errors)
         hint_at_kernels()
         depths = len(read.depths())
@@ -235,9 +238,17 @@ def _with_error(cor: float, error: float, wanted: bool) -> str:
 
 def _curve(points: Sequence[Point], *, wanted: bool) -> Table:
     adhesive = any(point.pull_off_force > 0 for point in points)
-    pull_off = ["pull-off"] if adhesive else []
+    lossy = loses(points)
     table = table_of_numbers(
-        "depth (nm)", "force (N)", "V (m/s)", "COR", "± model", *pull_off, "nodes", "resolved"
+        "depth (nm)",
+        "force (N)",
+        "V (m/s)",
+        "COR",
+        "± model",
+        *(["with losses"] if lossy else []),
+        *(["pull-off"] if adhesive else []),
+        "nodes",
+        "resolved",
     )
     for point in points:
         velocity, cor, error = point.impact_velocity, point.restitution, point.total_error
@@ -247,11 +258,16 @@ def _curve(points: Sequence[Point], *, wanted: bool) -> Table:
             "–" if math.isnan(velocity) else f"{velocity:.4g}",
             "–" if math.isnan(cor) else _with_error(cor, error, wanted),
             "–" if math.isnan(point.model_error) else f"{point.model_error:.3f}",
+            *([_number(point.restitution_with_losses)] if lossy else []),
             *([_force(point)] if adhesive else []),
             f"{point.contact_nodes:.0f}",
             "yes" if point.resolved else "no",
         )
     return table
+
+
+def _number(cor: float) -> str:
+    return "–" if math.isnan(cor) else f"{cor:.4f}"
 
 
 def _force(point: Point) -> str:

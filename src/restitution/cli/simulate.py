@@ -5,7 +5,8 @@ from pathlib import Path
 
 from restitution.case.quantities import read_impact_angle, read_quantity
 from restitution.cli.console import answers, print_numbers, say, say_written, table_of_numbers
-from restitution.errors import CaseError
+from restitution.display import counted
+from restitution.errors import CaseError, DomainError
 from restitution.impacts import oblique
 from restitution.impacts.time_integration import collide_in_time, course, stored_force
 from restitution.laws.from_results import bare_law
@@ -30,17 +31,32 @@ def simulate(
         _oblique(run, velocity or [], angle or [], spin or [], friction, out)
         return
     force = stored_force(results)
-    velocities = [velocity_of(text) for text in velocity or []] or [
+    given = [velocity_of(text) for text in velocity or []]
+    velocities = given or [
         point.velocity
         for point in law.points
         if (abs(force.unloading_from / point.indentation - 1) < 1e-6).any()
     ]
     table = table_of_numbers(
-        "V (m/s)", "COR", "error", "by energies", "time (s)", "force (N)", "depth (nm)"
+        "V (m/s)",
+        "COR",
+        "error",
+        "product" if force.losses.present else "by energies",
+        "time (s)",
+        "force (N)",
+        "depth (nm)",
     )
     courses, blended = [], False
+    shallow: list[DomainError] = []
     for speed in velocities:
-        collision, energies = collide_in_time(force, speed), law.at(speed)
+        try:
+            collision, energies = collide_in_time(force, speed), law.at(speed)
+        except DomainError as above:
+            # With losses, an impact reverses above the depth that the stored energies give.
+            if given or not force.losses.present:
+                raise
+            shallow.append(above)
+            continue
         # Errors of the force curves change the simulated COR, but not the COR from the stored
         # energies. The difference between these two COR estimates the effect of such errors. The
         # printed error is at least the error of the COR from the stored energies.
@@ -56,9 +72,16 @@ def simulate(
             f"{1e9 * collision.largest_indentation:.4g}",
         )
         blended |= collision.blended
+    if len(shallow) == len(velocities):
+        raise shallow[0]
     if out is not None:
         write_table(out, courses)
     print_numbers(table)
+    if shallow:
+        answers.print(
+            f"Left out: {counted(len(shallow), 'impact')} at which the losses keep the impact "
+            "above all stored unloading curves; give more unloading.curves."
+        )
     if blended:
         answers.print(
             "Some collisions reverse at a depth between two stored unloading curves, so their "

@@ -360,7 +360,7 @@ def export(
     out: Annotated[Path, output("OUT", "Folder for the files.")],
     velocity: Annotated[
         str | None,
-        option("VELOCITY", 'Impact velocity, such as "1 m/s"; not needed for csv.'),
+        option("VELOCITY", 'Impact velocity, such as "1 m/s"; not needed for c, python and csv.'),
     ] = None,
     coverage: Annotated[
         str | None,
@@ -372,4 +372,7 @@ def export(
         ),
     ] = None,
 ) -> None:
-    """Write the input of a DEM code to OUT, with the COR of every pair at VELOCITY."""
+    """Write the input of a DEM code to OUT, with the COR of every pair at VELOCITY.
+
+    c and python are for other codes: a contact with the whole law, in one file.
+    """

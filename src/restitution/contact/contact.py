@@ -113,6 +113,7 @@ class Contact:
         self.plasticity.check(self.pair)
         if self.adhesion is not None:
             self.adhesion.check(self)
+            object.__setattr__(self, "adhesion", self.adhesion.of_contact(self))
         if self.periodic:
             self._check_period()
         elif self.pair.flat:
@@ -148,7 +149,7 @@ class Contact:
     @property
     def adhesive(self) -> bool:
         """Whether the surfaces attract each other."""
-        return self.adhesion is not None
+        return self.adhesion is not None and self.adhesion.attracts
 
     @property
     def grid(self) -> Grid:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from restitution.contact.bodies import Pair
 from restitution.contact.checks.edge import require_inside_grid
 from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import solve_nonadhesive
@@ -20,10 +21,14 @@ class NoAttraction(Adhesion):
     """Surfaces that only repel each other."""
 
     label = "none"
+    attracts = False
     work_of_adhesion = 0.0
 
     def describe(self, unloading: str) -> dict[str, str]:
         return {"adhesion": self.label}
+
+    def length(self, pair: Pair) -> float:
+        return 0.0
 
     def load(
         self, contact: Contact, indentation: float, *, start: State | None, residual: float

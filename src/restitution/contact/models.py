@@ -133,6 +133,10 @@ class Plasticity(ABC):
         """
         return state
 
+    def of_asperities(self, pair: Pair, elastic_pressure: float) -> Plasticity:
+        """The model of asperities whose mean contact pressure (Pa), if elastic, has this value."""
+        return self
+
     def difference(self, contact: Contact, restitution: float) -> float:
         """Largest relative difference from finite elements, at the COR due to plasticity alone.
 
@@ -165,6 +169,7 @@ class Adhesion(ABC):
         bytes_per_node: Memory of a run per node of the grid (bytes).
         follows_path: Whether loading follows a path, so that a deeper solve should start from a
             shallower state (bool).
+        attracts: Whether the surfaces attract each other (bool).
         work_of_adhesion: Work of adhesion w (J/m²).
         equilibrium_separation: Gap z₀ (m) at which the traction between flat surfaces is zero.
     """
@@ -172,12 +177,21 @@ class Adhesion(ABC):
     label: ClassVar[str]
     bytes_per_node: ClassVar[float] = 0.0
     follows_path: ClassVar[bool] = False
+    attracts: ClassVar[bool] = True
     work_of_adhesion: float
     equilibrium_separation: float
+
+    def of_contact(self, contact: Contact) -> Adhesion:
+        """The model between the bodies of `contact`, of which it may be a function."""
+        return self
 
     def with_work_of_adhesion(self, work_of_adhesion: float) -> Adhesion:
         """Copy with another work of adhesion (J/m²)."""
         return replace(self, work_of_adhesion=work_of_adhesion)  # type: ignore[type-var]
+
+    def with_work_tolerance(self, tolerance: float) -> Adhesion:
+        """Copy whose loading work may have this relative error, if the model has a choice."""
+        return self
 
     def length(self, pair: Pair) -> float:
         """Length scale of adhesion (w²R*/E*²)^⅓ (m); 0 between flat bodies."""
@@ -215,9 +229,16 @@ class Adhesion(ABC):
         """Move a deformed contact to another indentation (m)."""
 
     def enclose(
-        self, contact: Contact, reached: Callable[[State], bool], start: State | None
+        self,
+        contact: Contact,
+        reached: Callable[[State], bool],
+        ahead: Callable[[State, float], float],
+        start: State | None,
     ) -> tuple[State, State] | None:
-        """Last state of loading that is not `reached` and the first that is; None: no path."""
+        """Last state of loading that is not `reached` and the first that is; None: no path.
+
+        `ahead` estimates the distance (m) left from a state and the stiffness there (N/m).
+        """
         return None
 
     def first_depth(self, contact: Contact, work: float, shallow: float) -> float:

@@ -72,8 +72,15 @@ class Curve:
         Raises:
             DomainError: A velocity lies outside the computed ones; nothing is extrapolated.
         """
+        return self._at(velocity, "ratio")
+
+    def with_losses_at(self, velocity: ArrayLike) -> Array:
+        """As `at`, with plates, waves and viscosity (`Point.final`)."""
+        return self._at(velocity, "final_ratio")
+
+    def _at(self, velocity: ArrayLike, name: str) -> Array:
         V = np.asarray(velocity, dtype=float)
-        span, curve = self.velocities, self._ratios()
+        span, curve = self.velocities, self._ratios(name)
         if not ((span[0] * (1 - _SAME) <= V) & (span[1] * (1 + _SAME) >= V)).all():
             low, high = (quantity(end, "m/s") for end in span)
             raise DomainError(
@@ -108,10 +115,10 @@ class Curve:
                 moving.append(point)
         return moving
 
-    def _ratios(self) -> RatioCurve:
+    def _ratios(self, name: str) -> RatioCurve:
         known = self._moving()
         adhesive = any(point.pull_off_force != 0 for point in known)
-        return RatioCurve(array(known, "impact_velocity"), array(known, "ratio"), adhesive=adhesive)
+        return RatioCurve(array(known, "impact_velocity"), array(known, name), adhesive=adhesive)
 
     def _summary(self) -> list[str]:
         e = self.restitution[np.isfinite(self.restitution)] if self.points else np.empty(0)
@@ -139,3 +146,8 @@ def largest_part(points: Sequence[Point]) -> str:
         return float(np.nansum(array(known, name) ** 2)) if known else 0.0
 
     return max(PARTS, key=squares)
+
+
+def loses(points: Iterable[Point]) -> bool:
+    """Whether plates, waves or viscosity lower the restitution of any point."""
+    return any(point.restitution_with_losses < point.restitution for point in points)

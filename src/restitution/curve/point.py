@@ -132,6 +132,28 @@ class Point(Record):
         "refinement",
         low=1.0,
     )
+    restitution_with_losses: float = magnitude(
+        "restitution_with_losses",
+        "1",
+        "restitution times the three factors that follow",
+        high=1.0,
+        optional=True,
+    )
+    plate_factor: float = magnitude(
+        "plate_factor", "1", "by bending waves in a thin wall", high=1.0, optional=True
+    )
+    waves_factor: float = magnitude(
+        "waves_factor", "1", "by waves in a thick wall", high=1.0, optional=True
+    )
+    viscosity_factor: float = magnitude(
+        "viscosity_factor", "1", "by internal friction", high=1.0, optional=True
+    )
+    loss_error: float = magnitude(
+        "loss_error",
+        "1",
+        "difference of restitution_with_losses from the equation of motion with all losses",
+        optional=True,
+    )
 
     @classmethod
     def of(cls, state: State, collision: Collision, refine: int = 1, touch: float = 0.0) -> Self:
@@ -179,6 +201,17 @@ class Point(Record):
     def ratio(self) -> float:
         """Ratio of unloading to loading work."""
         return self.unloading_work / self.loading_work
+
+    @property
+    def final(self) -> float:
+        """COR with all losses that are known."""
+        known = self.restitution_with_losses
+        return self.restitution if math.isnan(known) else known
+
+    @property
+    def final_ratio(self) -> float:
+        """`ratio`, times the squared factors of all losses; negative or 0 if the bodies stick."""
+        return self.final**2 if self.final > 0 else min(self.ratio, 0.0)
 
     @property
     def combined_error(self) -> float:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 
 from restitution.dem.export_common import unset_pairs
 from restitution.dem.pair import pull_off_force
@@ -15,7 +16,15 @@ from restitution.laws.law import Law
 from restitution.laws.law_files import law_rows
 from restitution.results.writer import replace_file, table_text, writing
 
-CODES = ("lammps", "liggghts", "yade", "mercurydpm", "edem", "mujoco", "drake", "csv")
+ADHESIVE = ("lammps-adhesive", "liggghts-adhesive")
+"""Variants with adhesive contact models; at least one pair must have adhesion."""
+CODES = (
+    *("lammps", "liggghts", "yade", "mercurydpm", "edem", "kratos", "mujoco", "drake"),
+    *ADHESIVE,
+    *("c", "python", "csv"),
+)
+WHOLE = ("c", "python", "csv")
+"""The codes whose files contain e at every computed velocity."""
 TABLE = "restitution.csv"
 # Columns that have the same value at every velocity of a law.
 _WHOLE = (
@@ -35,21 +44,21 @@ _WHOLE = (
 def export(laws: Sequence[Law], code: str, velocity: float | None) -> dict[str, str]:
     """The text of each input file of `code` (one of `CODES`) for the pairs of `laws`, by file name.
 
-    All codes except `csv` take one e for each pair, which holds at `velocity` (m/s). Raises
+    All codes except `WHOLE` take one e for each pair, which holds at `velocity` (m/s). Raises
     `CaseError` if the velocity or a law is missing, or if the code does not accept a value;
     `DomainError` for a velocity outside the computed ones.
     """
     table = pair_table(laws)
     if code == "csv":
         return {TABLE: _table(table, velocity)}
-    if velocity is None:
+    if velocity is None and code not in WHOLE:
         law = laws[0]
         raise CaseError(
             f"velocity: {code} takes one coefficient of restitution for each pair, valid at one "
             f'velocity; give this velocity with --velocity, from "{law.lowest:.3g} m/s" to '
             f'"{law.highest:.3g} m/s"'
         )
-    texts: dict[str, str] = import_module(f"restitution.dem.codes.{code}").write(table, velocity)
+    texts: dict[str, str] = _module(code).write(table, velocity)
     return texts
 
 
@@ -57,14 +66,14 @@ def limit(code: str) -> str:
     """The conditions under which `code` returns the exported e; empty if there are none."""
     if code == "csv":
         return ""
-    return str(getattr(import_module(f"restitution.dem.codes.{code}"), "NOTE", ""))
+    return str(getattr(_module(code), "NOTE", ""))
 
 
 def unset(laws: Sequence[Law], code: str) -> list[str]:
     """The pairs of spheres without a law, and how the user gives `code` their e."""
     if code == "csv":
         return []
-    module = import_module(f"restitution.dem.codes.{code}")
+    module = _module(code)
     return unset_pairs(pair_table(laws), module.CODE, getattr(module, "SETTING", ""))
 
 
@@ -80,6 +89,10 @@ def write_export(texts: dict[str, str], out: Path) -> list[Path]:
     for name, text in texts.items():
         replace_file(out / name, lambda to, text=text: to.write_text(text, encoding="utf-8"))  # type: ignore[misc]
     return [out / name for name in texts]
+
+
+def _module(code: str) -> ModuleType:
+    return import_module(f"restitution.dem.codes.{code.replace('-', '_')}")
 
 
 def _table(table: PairTable, velocity: float | None) -> str:

@@ -32,6 +32,7 @@ _ROUNDS = 6  # largest number of runs of the simulation
 _TOLERANCE = 0.005  # change of e below which the script stops
 _SAMPLES = 4  # number of table intervals between two neighbouring computed velocities
 _WIDTH = 98
+_AGAIN = "Export again for another velocity."
 _SIGNS = str.maketrans({'"': "'", "`": "'", "\\": "/", "&": "+", "{": "(", "}": ")", "$": "%"})
 _PLAIN = str.maketrans("–—−‐‑’‘“”·×≈→µ", "-----''''.x~>u") | str.maketrans(
     {"±": "+/-", "≤": "<=", "≥": ">=", "…": "...", "ß": "ss", "⁄": "/"}
@@ -44,7 +45,8 @@ class Export:
 
     `lowest` is the smallest e that `code` reproduces. `ends` says when `code` ends a contact, and
     `constant` whether its e is the same at every velocity. `setting` tells how to set e of pairs of
-    spheres if all laws are those of walls; empty if `code` does not need them.
+    spheres if all laws are those of walls; empty if `code` does not need them. With `whole`, the
+    files contain e at every computed velocity; with `adhesive`, also the pull-off force.
     """
 
     table: PairTable
@@ -54,6 +56,8 @@ class Export:
     ends: str
     constant: bool = True
     setting: str = ""
+    whole: bool = False
+    adhesive: bool = False
 
     @cached_property
     def pairs(self) -> list[ExportedPair]:
@@ -84,7 +88,7 @@ class Export:
         )
         lines = [
             self._title(),
-            f"They hold at this velocity only: {reason} Export again for another velocity.",
+            *([] if self.whole else [f"They hold at this velocity only: {reason} {_AGAIN}"]),
             f"End of a contact in {self.code}: {self.ends}",
             "SI units.",
             "",
@@ -92,7 +96,7 @@ class Export:
             "",
             "Types:",
             *(f"  {k}: {particle}" for k, particle in enumerate(self.table.particles, 1)),
-            *about(self.pairs, self.code),
+            *about(self.pairs, self.code, pulls=self.adhesive),
         ]
         return {self.notes_name: "\n".join(wrapped(lines)) + "\n"}
 
@@ -152,18 +156,28 @@ class Export:
             lines.append("WARNINGS are at the end of this file.")
         return commented(wrapped(lines), sign)
 
+    def lines(self) -> list[str]:
+        """Title, file of notes and warnings, for files without comments."""
+        return list(
+            map(
+                comment_text,
+                [self._title(), f"Types, errors, origin: {self.notes_name}", *self._ending()],
+            )
+        )
+
     def ending(self, sign: str) -> str:
         """The comment at the end of each exported file: all warnings, or nothing."""
         return commented(wrapped(self._ending()), sign)
 
     def _title(self) -> str:
+        at = "at the computed velocities" if self.whole else f"at {self.velocity:.6g} m/s"
         return (
-            f"Coefficients of restitution for {self.code} at {self.velocity:.6g} m/s, "
+            f"Coefficients of restitution for {self.code} {at}, "
             f"written by restitution {program_version()}"
         )
 
     def _ending(self) -> list[str]:
-        return [*self.unset(), *grouped_warnings(self.pairs)]
+        return [*self.unset(), *grouped_warnings(self.pairs, holds=self.adhesive)]
 
     def unset(self) -> list[str]:
         """The pairs of spheres without a law, and how the user sets their e."""
@@ -233,6 +247,18 @@ def number(value: float) -> str:
     return f"{value:.9g}"
 
 
+def _real(value: float) -> str:
+    """A number that readers of JSON cannot take for an integer."""
+    text = number(value)
+    return text if any(sign in text for sign in ".e") else f"{text}.0"
+
+
+def _numbers(values: Iterable[float]) -> str:
+    return textwrap.fill(
+        ", ".join(map(number, values)), _WIDTH, initial_indent="    ", subsequent_indent="    "
+    )
+
+
 def program_version() -> str:
     """The installed version of this package, or "(version unknown)"."""
     try:
@@ -253,6 +279,8 @@ def _environment() -> Environment:
     environment.filters |= {
         "number": number,
         "comment_text": comment_text,
+        "numbers": _numbers,
+        "real": _real,
         "quantity": quantity,
         "xml_safe": _xml_safe,
     }

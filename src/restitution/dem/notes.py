@@ -23,16 +23,20 @@ _OBSTACLES = {
     "LAMMPS": "jkr and dmt do not accept coeff_restitution",
     "LIGGGHTS": "cohesion sjkr needs an energy density instead of the work of adhesion",
     "MuJoCo": "contact forces are never attractive",
+    "Kratos": "its JKR and DMT laws lose no energy by adhesion; the export to c or python has it",
     "Drake": "contact forces are never attractive",
 }
 _MOST = 20  # largest number of pairs that are listed after a warning
 
 
-def grouped_warnings(pairs: Sequence[ExportedPair]) -> list[str]:
-    """Each warning once, with its pairs; warnings that differ only in numbers count as one."""
+def grouped_warnings(pairs: Sequence[ExportedPair], *, holds: bool = False) -> list[str]:
+    """Each warning once, with its pairs; warnings that differ only in numbers count as one.
+
+    `holds` says that the exported model keeps bodies in contact that stick.
+    """
     groups: dict[str, list[tuple[ExportedPair, str]]] = {}
     for pair in pairs:
-        for text in dict.fromkeys(_warnings(pair)):
+        for text in dict.fromkeys(_warnings(pair, holds=holds)):
             groups.setdefault(without_numbers(text), []).append((pair, text))
     return [f"WARNING: {_in_words(group, len(pairs))}" for group in groups.values()]
 
@@ -46,9 +50,12 @@ def numbers(pairs: Sequence[ExportedPair], count: int = 0) -> str:
     return f"pair{'' if len(pairs) == 1 else 's'} {', '.join(listed)}{more}"
 
 
-def about(pairs: Sequence[ExportedPair], code: str) -> list[str]:
-    """The law of each pair; lines that are the same for all pairs are written once."""
-    described = [_about(pair, code) for pair in pairs]
+def about(pairs: Sequence[ExportedPair], code: str, *, pulls: bool = False) -> list[str]:
+    """The law of each pair; lines that are the same for all pairs are written once.
+
+    `pulls` says that the exported model has the pull-off force.
+    """
+    described = [_about(pair, code, pulls=pulls) for pair in pairs]
     common = [line for line in described[0] if all(line in lines for lines in described)]
     several = len(pairs) > 1
     lines = ["", "All pairs:", *common] if several and common else []
@@ -58,7 +65,7 @@ def about(pairs: Sequence[ExportedPair], code: str) -> list[str]:
     return lines
 
 
-def _warnings(pair: ExportedPair) -> list[str]:
+def _warnings(pair: ExportedPair, *, holds: bool) -> list[str]:
     """The warnings of a pair; `{pairs}` stands for the pairs for which a warning holds."""
     lines, V = [], f"{pair.velocity:.6g} m/s"
     if not pair.law.at(pair.velocity).resolved:
@@ -66,7 +73,7 @@ def _warnings(pair: ExportedPair) -> list[str]:
             f"unresolved at {V} ({{pairs}}): the grid was too coarse there, and the error of e "
             "may be too small"
         )
-    if pair.restitution == 0:
+    if pair.restitution == 0 and not holds:
         lines.append(f"{{pairs}} sticks at {V}, but e = 0 does not keep the bodies in contact")
     return lines + [f"{{pairs}}: {text}" for text in pair.law.warnings]
 
@@ -80,7 +87,7 @@ def _in_words(group: Sequence[tuple[ExportedPair, str]], count: int) -> str:
     return text.replace("{pairs}", numbers(pairs, count), 1) + differ
 
 
-def _about(pair: ExportedPair, code: str) -> list[str]:
+def _about(pair: ExportedPair, code: str, *, pulls: bool) -> list[str]:
     law, velocity = pair.law, pair.velocity
     p_y = "none (elastic)" if law.yield_pressure is None else f"{law.yield_pressure:.6g} Pa"
     title = textwrap.shorten(one_line(law.title), 200, placeholder=" ...")
@@ -90,6 +97,7 @@ def _about(pair: ExportedPair, code: str) -> list[str]:
         f"  e = {pair.restitution:.6g} +/- {law.at(velocity).error:.2g} at {velocity:.6g} m/s"
         + _elsewhere(law, velocity),
         *_covered(law, velocity),
+        *_losses(law, velocity),
         f"  R* = {law.radius:.6g} m, E* = {law.contact_modulus:.6g} Pa, m* = {law.mass:.6g} kg",
         f"  yield pressure p_y: {p_y}; convention: {law.conventions.yield_pressure}",
         f"  source of the yield pressure: {source}",
@@ -98,7 +106,7 @@ def _about(pair: ExportedPair, code: str) -> list[str]:
         f"  elastic contact time: {pair.contact_time:.3g} s; a time step of 1/50 "
         "of this time changes e by at most 1 % in LAMMPS",
         f"  computed from {law.lowest:.4g} to {law.highest:.4g} m/s; nothing is extrapolated",
-        *_adhesion(law, velocity, code),
+        *_adhesion(law, velocity, code, pulls=pulls),
     ]
 
 
@@ -122,7 +130,14 @@ def _covered(law: Law, velocity: float) -> list[str]:
     ]
 
 
-def _adhesion(law: Law, velocity: float, code: str) -> list[str]:
+def _losses(law: Law, velocity: float) -> list[str]:
+    nearest = min(law.points, key=lambda point: abs(point.velocity - velocity))
+    known = ", ".join(f"{name} {nearest.factors[name]:.4g}" for name in law.losses)
+    at = f"factors at {nearest.velocity:.4g} m/s"
+    return [f"  e includes losses beside yielding and adhesion, {at}: {known}"] if known else []
+
+
+def _adhesion(law: Law, velocity: float, code: str, *, pulls: bool) -> list[str]:
     if law.work_of_adhesion == 0:
         return []
     force = pull_off_force(law, velocity)
@@ -133,5 +148,5 @@ def _adhesion(law: Law, velocity: float, code: str) -> list[str]:
         f"  adhesion {law.work_of_adhesion:.4g} J/m^2: e includes its dissipation",
         f"  pull-off force after an impact at {velocity:.6g} m/s: {said}; JKR of the smooth "
         f"bodies: {float(jkr.pull_off_force):.4g} N",
-        f"  {_LEFT_OUT}{obstacle}",
+        *([] if pulls else [f"  {_LEFT_OUT}{obstacle}"]),
     ]

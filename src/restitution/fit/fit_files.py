@@ -89,7 +89,7 @@ def _summary(fit: Fit, text: str) -> dict[str, Any]:
         "std_if_one_place assumes one place",
         "low_and_high_include": "intervals_include, and the model of plasticity "
         f"({fit.deviations.model_share:g} times by_model_error)",
-        "intervals_do_not_include": "values that the case gives, rate effects, elastic waves",
+        "intervals_do_not_include": "values that the case gives, rate effects of yielding",
         "largest_model_error": float(fit.deviations.model.max()),
         "searches": [
             {

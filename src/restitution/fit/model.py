@@ -27,12 +27,14 @@ from restitution.contact.loading import solve
 from restitution.contact.prescribed.velocity import solve_at_velocity
 from restitution.contact.state import State
 from restitution.curve.columns import array
-from restitution.curve.curve import Curve
+from restitution.curve.curve import Curve, UnloadingCurve
 from restitution.curve.follow import Load, Unloading, follow
 from restitution.curve.point import Point
 from restitution.fit.parameters import Parameter, with_factors
+from restitution.losses.losses import Losses
 from restitution.runs.companions import coarser_contact
 from restitution.runs.log import Say, ignore
+from restitution.runs.losses import unloading_of, with_losses
 from restitution.runs.messages import naming_keys, require_possible
 
 Array = NDArray[np.float64]
@@ -71,8 +73,8 @@ class Mean:
 
 
 def restitution(curve: Curve, velocity: Array) -> Array:
-    """COR at `velocity` (m/s); constant beyond the ends of `curve`."""
-    return curve.at(np.clip(velocity, *curve.velocities))
+    """COR with all losses at `velocity` (m/s); constant beyond the ends of `curve`."""
+    return curve.with_losses_at(np.clip(velocity, *curve.velocities))
 
 
 def _interpolated(curve: Curve, name: str, velocity: Array) -> Array:
@@ -81,9 +83,14 @@ def _interpolated(curve: Curve, name: str, velocity: Array) -> Array:
 
 
 def curve_of(
-    contact: Contact, low: float, high: float, unloading: UnloadingTable, near: float = math.nan
+    contact: Contact,
+    losses: Losses,
+    low: float,
+    high: float,
+    unloading: UnloadingTable,
+    near: float = math.nan,
 ) -> Curve:
-    """Compute the curve of `contact` from velocity `low` to at least `high` (m/s).
+    """Compute the curve of `contact` with `losses` from velocity `low` to at least `high` (m/s).
 
     `near` (m), if given, is the first depth of an earlier curve of the same surface with other
     parameters. Each depth is then `near` times a power of `_RATIO`, so both curves use depths of
@@ -103,11 +110,15 @@ def curve_of(
 
     how = Unloading(unloading.method, tolerance=unloading.restitution_error)
     deepest: list[float] = []
+    back: dict[float, UnloadingCurve] = {}
     with naming_keys("impact"):
         for impact in follow(loads(), how):
             deepest.append(impact.state.indentation)
+            if losses.present and (unloaded := unloading_of(impact)) is not None:
+                back[impact.point.indentation] = unloaded
             if not points or _velocity(impact.point) > _velocity(points[-1]):
                 points.append(impact.point)
+    points = with_losses(contact.pair, losses, points, back)
     first = max(sum(_velocity(point) <= low for point in points) - 1, 0)
     return Curve(tuple(points[first:]))
 
@@ -171,7 +182,7 @@ class CaseModel:
             if cost != "full":
                 contact = coarser_contact(contact)
             near = self._first_depths.get((number, cost), math.nan)
-            curve = curve_of(contact, self.low, self.high, case.unloading, near)
+            curve = curve_of(contact, case.losses(), self.low, self.high, case.unloading, near)
             self._first_depths[number, cost] = curve.points[0].indentation
             curves.append(curve)
         self.evaluations += len(curves)

@@ -6,13 +6,13 @@ The normal motion is that of a head-on impact at the normal velocity. The contac
 
 for solid spheres; T is the tangential force of a row of springs (`foundation`). Neglected: the
 coupling of normal and tangential displacements of unlike materials, the torque about the normal,
-rolling friction, and elastic waves. docs/oblique.md derives the condition of full slip.
+rolling friction, plates, waves and viscosity. docs/oblique.md derives the condition of full slip.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -29,6 +29,7 @@ from restitution.impacts.time_integration import (
     stored_force,
     table_rows,
 )
+from restitution.losses.losses import Losses
 from restitution.results.reader import RunResults
 
 _STEPS = 4000  # number of time steps of a collision
@@ -124,6 +125,7 @@ def collide_obliquely(
     if any(math.isinf(body.radius) and spin != 0 for body, spin in bodies):
         raise CaseError("spins: a wall does not rotate; give 0 for the wall")
     V_n, V_t = velocity * math.cos(angle), velocity * math.sin(angle)
+    law = replace(law, losses=Losses())  # its normal motion is quasi-static
     normal = collide_in_time(law, V_n)
     rolling = sum(body.radius * spin for body, spin in bodies if not math.isinf(body.radius))
     mass = law.pair.mass

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +31,7 @@ from restitution.errors import (
     OutputError,
     RestitutionError,
 )
+from restitution.losses.losses import NAMES, Damping, Losses
 from restitution.results.reader import RunResults
 from restitution.results.tables import damaged
 
@@ -43,6 +44,9 @@ _SLACK = 1e-3
 # ln W is interpolated against ln δ only if the exponent n in W ∝ δⁿ is below this value (W is the
 # loading work). A larger n means that W is nearly zero, because the bodies attract each other.
 _STEEPEST = 6.0
+# Step of the differences that give the stiffness, as a fraction of the deepest stored depth.
+_DIFFERENCE = 1e-6
+_COLUMNS = ("indentation", "force", "loading_work", "impact_velocity", "separation_indentation")
 _SAME = 1e-5  # largest relative difference of depths that count as equal
 
 
@@ -50,7 +54,8 @@ _SAME = 1e-5  # largest relative difference of depths that count as equal
 class ReferenceCollision:
     """One collision: its results, and time series (arrays of equal length), in SI units.
 
-    `blended` says whether the unloading force was interpolated between two stored curves.
+    `lost` has the energy (J) of each of `losses.NAMES`. `blended` says whether the unloading force
+    was interpolated between two stored curves.
     """
 
     velocity: float
@@ -60,6 +65,7 @@ class ReferenceCollision:
     largest_force: float
     rebound_first: float
     rebound_second: float
+    lost: dict[str, float]
     blended: bool
     time: Array
     indentation: Array
@@ -88,7 +94,7 @@ class StoredForce:
     (m/s) that reaches it. `loading` maps indentation (m) to force (N), `separation` maximum
     indentation (m) to the indentation at separation (m). `unloading` has one curve for each depth
     of `unloading_from` (m, increasing): increasing indentations (m) and forces (N). `roughness` is
-    None for smooth bodies.
+    None for smooth bodies. `losses` act in addition to the stored forces.
     """
 
     pair: Pair
@@ -99,6 +105,7 @@ class StoredForce:
     unloading_from: Array
     unloading: tuple[tuple[Array, Array], ...]
     roughness: StoredRoughness | None = None
+    losses: Losses = field(default_factory=Losses)
 
     def __post_init__(self) -> None:
         if self.pair.mass is None:
@@ -125,16 +132,23 @@ class StoredForce:
 
         Outside the stored depths, the nearest stored curve gives the shape.
         """
+        below, above, share = self.neighbours(deepest)
+        upper = _shape(*self.unloading[above])
+        if below == above:
+            return upper, False
+        lower = _shape(*self.unloading[below])
+        return lambda s: (1 - share) * lower(s) + share * upper(s), True
+
+    def neighbours(self, deepest: float) -> tuple[int, int, float]:
+        """Numbers of the stored curves around `deepest` (m), and the share of the second."""
         depths = self.unloading_from
         near = np.flatnonzero(np.abs(depths / deepest - 1) < _SAME)
         after = int(near[0]) if near.size else int(np.searchsorted(depths, deepest))
-        upper = _shape(*self.unloading[min(after, depths.size - 1)])
         if near.size or after in (0, depths.size):
-            return upper, False
-        lower = _shape(*self.unloading[after - 1])
+            only = min(after, depths.size - 1)
+            return only, only, 1.0
         below = depths[after - 1]
-        share = math.log(deepest / below) / math.log(depths[after] / below)
-        return lambda s: (1 - share) * lower(s) + share * upper(s), True
+        return after - 1, after, math.log(deepest / below) / math.log(depths[after] / below)
 
 
 def stored_force(out: Path | RunResults) -> StoredForce:
@@ -153,7 +167,8 @@ def stored_force(out: Path | RunResults) -> StoredForce:
             "(for an ensemble, give the folder of one realisation)"
         )
     try:
-        return force_of(run.case.pair(), run.dataset, run.unloading)
+        force = force_of(run.case.pair(), run.dataset, run.unloading)
+        return replace(force, losses=run.case.losses())
     except (ValueError, KeyError, IndexError, TypeError) as error:
         if isinstance(error, RestitutionError):
             raise
@@ -166,16 +181,24 @@ def force_of(pair: Pair, results: xr.Dataset, unloading: Sequence[UnloadingCurve
     `results` has the variables of `results.nc`, including `height`, `x` and `y`. Raises
     `OutputError` if no unloading reaches separation, and `CaseError` if `pair` has no mass.
     """
-    depth, force = results["indentation"].values, results["force"].values
+    depth = results["indentation"].values
+    force = force_of_columns(pair, {name: results[name].values for name in _COLUMNS}, unloading)
+    return replace(force, roughness=_roughness(results, depth))
+
+
+def force_of_columns(
+    pair: Pair, columns: Mapping[str, Array], unloading: Sequence[UnloadingCurve]
+) -> StoredForce:
+    """As `force_of`, from the arrays of a curve named in `_COLUMNS`, without roughness."""
+    depth, force, work, velocity, separation = (columns[name] for name in _COLUMNS)
     return StoredForce(
         pair=pair,
         deepest=float(depth[-1]),
-        highest=float(np.nanmax(results["impact_velocity"].values)),
-        loading=_loading(depth, force, results["loading_work"].values),
-        separation=_separation(results, depth),
+        highest=float(np.nanmax(velocity)),
+        loading=loading_force(depth, force, work),
+        separation=_separation(separation, depth),
         unloading_from=np.array([curve.start for curve in unloading]),
         unloading=tuple((curve.indentation, curve.force) for curve in unloading),
-        roughness=_roughness(results, depth),
     )
 
 
@@ -207,36 +230,46 @@ def collide_in_time(law: StoredForce, velocity: float) -> ReferenceCollision:
     m1, m2 = law.pair.first.mass, law.pair.second.mass
     assert m1 is not None  # checked by StoredForce
     assert m2 is not None
+    damping = Damping()
+    if law.losses.present:
+        damping = law.losses.damping(
+            collide_in_time(replace(law, losses=Losses()), velocity).duration
+        )
+    motion = _Motion(m1, m2, damping, h=_DIFFERENCE * law.deepest)
     share = 1.0 if math.isinf(m2) else 0.0 if math.isinf(m1) else m2 / (m1 + m2)
-    start = np.array([0.0, 0.0, share * velocity, (share - 1) * velocity])
+    start = np.array([0.0, 0.0, share * velocity, (share - 1) * velocity, *motion.rest])
 
     def stop(t: float, y: Array) -> float:
-        return float(y[2] - y[3])
+        return motion.closing(law.loading, y)
 
     def too_deep(t: float, y: Array) -> float:
-        return float(y[0] - y[1]) - law.deepest * (1 + _SLACK)
+        return float(motion.indentation(y)) - law.deepest * (1 + _SLACK)
 
-    down = _integrate(law.loading, m1, m2, start, law.deepest, velocity, (stop, too_deep))
+    def integrate(force: Force, start: Array, *events: Callable[[float, Array], float]) -> Any:
+        rates = motion.rates(force)
+        return _integrate(rates, start, motion.scales(law.deepest, velocity), velocity, events)
+
+    down = integrate(law.loading, start, stop, too_deep)
     if down.t_events[1].size:
         raise NotConvergedError(
             f"velocity: at {velocity:.6g} m/s the stored loading curve ends before the particles "
             "stop, so the stored forces contradict the stored impact velocities; run the case again"
         )
     turn = down.y[:, -1]
-    deepest = float(turn[0] - turn[1])
+    deepest = float(motion.indentation(turn))
     back, end, blended = law.branch(min(deepest, law.deepest))
 
     def parted(t: float, y: Array) -> float:
-        return float(y[0] - y[1]) - end
+        return float(motion.indentation(y)) - end
 
     def held(t: float, y: Array) -> float:
-        return float(y[2] - y[3]) - 1e-9 * velocity
+        return motion.closing(back, y) - 1e-9 * velocity
 
     held.direction = 1.0  # type: ignore[attr-defined]
-    up = _integrate(back, m1, m2, turn, law.deepest, velocity, (parted, held))
+    up = integrate(back, turn, parted, held)
     sticks = up.t_events[1].size > 0
     closing = np.concatenate([down.y[2] - down.y[3], up.y[2] - up.y[3]])
-    loaded, unloaded = down.y[0] - down.y[1], up.y[0] - up.y[1]
+    loaded, unloaded = motion.indentation(down.y), motion.indentation(up.y)
     force = [*map(law.loading, loaded), *map(back, unloaded)]
     return ReferenceCollision(
         velocity=velocity,
@@ -246,6 +279,7 @@ def collide_in_time(law: StoredForce, velocity: float) -> ReferenceCollision:
         largest_force=max(force),
         rebound_first=float(up.y[2, -1]),
         rebound_second=float(up.y[3, -1]),
+        lost=dict(zip(NAMES, up.y[5:, -1].tolist() or [0.0] * len(NAMES), strict=True)),
         blended=blended,
         time=np.concatenate([down.t, down.t[-1] + up.t]),
         indentation=np.concatenate([loaded, unloaded]),
@@ -273,21 +307,72 @@ def table_rows(columns: Mapping[str, Array | float]) -> list[dict[str, float]]:
     return [dict(zip(columns, row, strict=True)) for row in zip(*values, strict=True)]
 
 
+@dataclass(frozen=True)
+class _Motion:
+    """The equations of motion of two particles (positions, velocities; with damping also the
+    displacement of the plate and the energies lost in order of `NAMES`).
+
+    `h` (m) is the step of the differences that give the stiffness.
+    """
+
+    m1: float
+    m2: float
+    damping: Damping
+    h: float
+
+    @property
+    def rest(self) -> list[float]:
+        return [] if self.damping == Damping() else [0.0] * (1 + len(NAMES))
+
+    def scales(self, depth: float, velocity: float) -> list[float]:
+        mass = min(self.m1, self.m2)
+        more = [depth] + [0.5 * mass * velocity**2] * len(NAMES) if self.rest else []
+        return [depth, depth, velocity, velocity, *more]
+
+    def indentation(self, y: Array) -> Any:
+        return y[0] - y[1] - (y[4] if self.rest else 0.0)
+
+    def closing(self, force: Force, y: Array) -> float:
+        """dδ/dt (m/s)."""
+        if not self.rest:
+            return float(y[2] - y[3])
+        return self._contact(force, y)[0]
+
+    def _contact(self, force: Force, y: Array) -> tuple[float, float, float]:
+        """dδ/dt, the force without damping, and its stiffness."""
+        x, given = float(self.indentation(y)), self.damping
+        F = force(x)
+        stiff = max((force(x + self.h) - force(x - self.h)) / (2 * self.h), 0.0)
+        c = given.time * stiff + given.radiation * stiff**2
+        return (float(y[2] - y[3]) - given.mobility * F) / (1 + given.mobility * c), F, stiff
+
+    def rates(self, force: Force) -> Callable[[float, Array], list[float]]:
+        m1, m2, given = self.m1, self.m2, self.damping
+
+        def free(t: float, y: Array) -> list[float]:
+            F = force(float(y[0] - y[1]))
+            return [y[2], y[3], -F / m1, F / m2]
+
+        def damped(t: float, y: Array) -> list[float]:
+            v, F, stiff = self._contact(force, y)
+            viscous, waves = given.time * stiff * v, given.radiation * stiff**2 * v
+            F += viscous + waves
+            plate = given.mobility * F
+            return [y[2], y[3], -F / m1, F / m2, plate, plate * F, waves * v, viscous * v]
+
+        return damped if self.rest else free
+
+
 def _integrate(
-    force: Force,
-    m1: float,
-    m2: float,
+    rates: Callable[[float, Array], list[float]],
     start: Array,
-    scale: float,
+    scales: list[float],
     velocity: float,
     events: tuple[Callable[[float, Array], float], ...],
 ) -> Any:
     from scipy.integrate import solve_ivp
 
-    def rates(t: float, y: Array) -> list[float]:
-        F = force(float(y[0] - y[1]))
-        return [y[2], y[3], -F / m1, F / m2]
-
+    scale = scales[0]
     for event in events:
         event.terminal = True  # type: ignore[attr-defined]
     path = solve_ivp(
@@ -297,7 +382,7 @@ def _integrate(
         method="DOP853",
         events=events,
         rtol=_RTOL,
-        atol=[_RTOL * scale] * 2 + [_RTOL * velocity] * 2,
+        atol=[_RTOL * one for one in scales],
         max_step=scale / velocity,
     )
     if path.status != 1:
@@ -308,7 +393,7 @@ def _integrate(
     return path
 
 
-def _loading(depth: Array, force: Array, work: Array) -> Force:
+def loading_force(depth: Array, force: Array, work: Array) -> Force:
     with np.errstate(divide="ignore", invalid="ignore"):
         powers = force * depth / work
     if (work > 0).all() and (powers > 0.5).all() and (powers < _STEEPEST).all():
@@ -354,8 +439,8 @@ def _hermite(x: Array, y: Array, slope: Array) -> Callable[[float], tuple[float,
     return at
 
 
-def _separation(results: xr.Dataset, depth: Array) -> Callable[[float], float]:
-    ratio = results["separation_indentation"].values / depth
+def _separation(separation: Array, depth: Array) -> Callable[[float], float]:
+    ratio = separation / depth
     known = np.isfinite(ratio)
     if not known.any():
         raise OutputError(

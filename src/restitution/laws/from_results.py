@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,6 +16,7 @@ from restitution.laws.coverage import covered_points
 from restitution.laws.law import Conventions, Law, LawPoint
 from restitution.laws.law_files import LAW_FILE
 from restitution.laws.particle import Particle
+from restitution.losses.losses import NAMES
 from restitution.results.reader import RunResults, read_run
 
 _SAME = 1e-9  # largest relative difference of values that count as equal
@@ -99,7 +100,7 @@ def _law(out: Path, run: RunResults) -> Law:
         friction=case.interface.friction,
         model={key: str(value) for key, value in model.items()},
         conventions=Conventions(
-            **summary["conventions"],
+            **_conventions(summary["conventions"], points),
             restitution_error=_error_includes(summary["diagnostics"], wanted=case.total_error),
         ),
         yield_velocity=derived["yield_velocity_m_per_s"],
@@ -123,6 +124,12 @@ def _law(out: Path, run: RunResults) -> Law:
         sticks_below_error=sticking.get("sticks_below_error_m_per_s"),
         warnings=tuple(warnings),
     )
+
+
+def _conventions(stored: Mapping[str, str], points: Sequence[LawPoint]) -> dict[str, str]:
+    lost = [name for name in NAMES if any(point.factors.get(name, 1.0) < 1 for point in points)]
+    more = f", times the factors of {', '.join(lost)}" if lost else ""
+    return {**stored, "restitution": stored["restitution"] + more}
 
 
 def _read(out: Path) -> RunResults:
@@ -166,18 +173,26 @@ def _points(run: RunResults) -> list[LawPoint]:
         points.append(
             LawPoint(
                 velocity=velocity,
-                restitution=impact.restitution,
+                restitution=impact.final,
                 error=_error(impact, wanted=run.case.total_error),
-                ratio=impact.ratio,
+                ratio=impact.final_ratio,
                 loading_work=impact.loading_work,
                 indentation=impact.indentation,
                 force=impact.force,
                 pull_off_force=_known(impact.pull_off_force),
                 pull_off_error=_known(impact.pull_off_error),
+                separation=_known(impact.separation_indentation),
                 resolved=impact.resolved,
+                quasi_static=impact.restitution,
+                factors=_factors(impact),
             )
         )
     return points
+
+
+def _factors(impact: Impact) -> dict[str, float]:
+    factors = {name: getattr(impact, f"{name}_factor") for name in NAMES}
+    return {name: of for name, of in factors.items() if not math.isnan(of)}
 
 
 def _known(value: float) -> float | None:
@@ -186,9 +201,13 @@ def _known(value: float) -> float | None:
 
 def _error(point: Impact, *, wanted: bool) -> float:
     """Total error of a point: the largest possible error of COR if it is `wanted` but unknown."""
+    e = point.final
     if _is_unknown(point, wanted=wanted):
-        return max(point.restitution, 1 - point.restitution)
-    return point.combined_error if math.isnan(point.total_error) else point.total_error
+        return max(e, 1 - e)
+    error = point.combined_error if math.isnan(point.total_error) else point.total_error
+    product = e / point.restitution if point.restitution > 0 else 1.0
+    beyond = 0.0 if math.isnan(point.loss_error) else point.loss_error
+    return min(product * error + beyond, max(e, 1 - e))
 
 
 def _is_unknown(point: Impact, *, wanted: bool) -> bool:

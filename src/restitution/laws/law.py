@@ -34,7 +34,9 @@ class LawPoint:
     """The result at one impact velocity, in SI units.
 
     `ratio` is W_u/W_l, unloading work over loading work; zero or negative if the pair sticks.
-    `error` is that of `restitution`; `indentation` and `force` are the maxima of the impact.
+    `error` is that of `restitution`; `indentation` and `force` are the maxima of the impact, and
+    `separation` the indentation at which the bodies separate. `restitution` is `quasi_static` times
+    `factors`, those of the losses (`losses.NAMES`); laws of older versions have no factors.
     `deviation` and `quantiles` (5, 25, 50, 75 and 95 %) are those of COR over places of the
     surfaces; None if it was not measured at several.
     """
@@ -48,7 +50,10 @@ class LawPoint:
     force: float
     pull_off_force: float | None
     pull_off_error: NotNegative | None = None
+    separation: float | None = None
     resolved: bool
+    quasi_static: Share | None = None
+    factors: dict[str, Share] = field(default_factory=dict)
     deviation: NotNegative | None = None
     quantiles: Quantiles | None = None
 
@@ -269,6 +274,12 @@ class Law:
         V = np.asarray(velocity, dtype=float)
         e = [self.at(v).restitution for v in V.ravel().tolist()]
         return np.asarray(np.reshape(e, V.shape)[()])
+
+    @property
+    def losses(self) -> tuple[str, ...]:
+        """Names of the losses that lower the restitution at any velocity."""
+        known = (name for point in self.points for name, of in point.factors.items() if of < 1)
+        return tuple(dict.fromkeys(known))
 
     def curve(self) -> RatioCurve:
         """W_u/W_l, interpolated between the velocities."""

@@ -11,6 +11,7 @@ from pydantic import ValidationError
 
 from restitution.errors import CaseError, OutputError, first_problem
 from restitution.laws.law import QUANTILES, STORED_LAW, Law, LawPoint
+from restitution.losses.losses import NAMES
 from restitution.results.checksums import check_file
 from restitution.results.interruption import hold_signals
 from restitution.results.writer import make_folder, replace_file, write_checksums, write_table
@@ -91,6 +92,8 @@ def law_rows(law: Law) -> list[dict[str, float | str]]:
             "restitution_error": point.error,
             "restitution_error_includes": law.conventions.restitution_error,
             "resolved": point.resolved,
+            "quasi_static_restitution": _or_nan(point.quasi_static),
+            **{f"{name}_factor": point.factors.get(name, math.nan) for name in NAMES},
             **_distribution(point),
             "compact_fit": fitted,
             "compact_fit_error": abs(fitted - point.restitution),

@@ -222,6 +222,13 @@ def _component(key: str, name: str, table: Any) -> Component:
         radii = _radii(key, sizes)
     fractions = _number_fractions(key, body, sizes, radii)
     material = _validated(BodyTable, {**body, "radius": "flat"}, key)
+    if material.relaxation_time is not None:
+        raise CaseError(
+            f"{key}.relaxation_time: is not used in a mixture, whose pairs share curves at equal "
+            "energy; give loss_tangent"
+        )
+    if radii and material.thickness is not None:
+        raise CaseError(f"{key}.thickness: belongs to a wall; remove this key")
     if radii and material.density is None:
         raise CaseError(
             f"{key}.density: is missing; give it, because the impact energy depends on it"

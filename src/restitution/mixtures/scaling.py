@@ -7,6 +7,7 @@ be zero by chance, so the error is the largest of those at this velocity and the
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 from restitution.curve.interpolation import RatioCurve, root
 from restitution.laws.compact_fit import compact_fit
 from restitution.laws.law import Law, LawPoint
+from restitution.losses.losses import NAMES
 from restitution.mixtures.family import Family, ParticlePair
 
 Array = NDArray[np.float64]
@@ -125,6 +127,13 @@ class FamilyLaws:
                 for k in used
             )
 
+        def factor(name: str) -> float | None:
+            known = [name in point.factors for law in laws for point in law.points]
+            if not all(known):
+                return None
+            return sum(shares[k] * _factor_at(laws[k], name, _of(laws[k], V, pair)) for k in used)
+
+        factors = {name: of for name in NAMES if (of := factor(name)) is not None}
         pull_off = [point.pull_off_force for law in laws for point in law.points]
         return LawPoint(
             velocity=V,
@@ -136,6 +145,8 @@ class FamilyLaws:
             force=mean("force", 2),
             pull_off_force=None if None in pull_off else mean("pull_off_force", 1),
             resolved=all(estimates[k].resolved for k in used),
+            quasi_static=_quasi_static(root(ratio), factors),
+            factors=factors,
             deviation=None if self.laws[0].coverage is None else mean("deviation", 0),
         )
 
@@ -167,6 +178,16 @@ def _column_at(law: Law, name: str, velocity: float) -> float:
     if (values <= 0).any():
         return float(np.interp(math.log(velocity), L, values))
     return math.exp(np.interp(math.log(velocity), L, np.log(values)))
+
+
+def _factor_at(law: Law, name: str, velocity: float) -> float:
+    L, values = np.log(law.column("velocity")), [point.factors[name] for point in law.points]
+    return float(np.interp(math.log(velocity), L, values))
+
+
+def _quasi_static(restitution: float, factors: Mapping[str, float]) -> float:
+    product = math.prod(factors.values())
+    return min(restitution / product, 1.0) if product > 0 else restitution
 
 
 def _scaled(value: float | None, factor: float) -> float | None:

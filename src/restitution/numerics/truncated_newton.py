@@ -21,9 +21,14 @@ from restitution.numerics.expressions import dot
 # φ″.
 NodePotential = Callable[[Array], tuple[Array, Array, Array]]
 
+# Function of the unknowns u, p = K⁻¹u, φ′ and φ″ that returns the φ″ of a Newton step.
+Secant = Callable[[Array, Array, Array, Array], Array]
+
 MOST_STEPS = 300  # Newton steps after which the solve counts as not converged
 _MOST_ITERATIONS = 500  # limit on the conjugate-gradient iterations of one Newton step
 _FORCING = 0.1  # largest relative residual of the linear system of a Newton step
+# The smallest one, as a fraction of the reduction of the residual that is left.
+_ENOUGH = 0.01
 
 # Let q be the actual decrease of the energy in a step, divided by the predicted decrease. The step
 # is accepted if q > _TAKEN. The trust region shrinks if q < _POOR. It grows if q > _GOOD and the
@@ -60,14 +65,16 @@ def minimise_locally(
     length: float,
     tolerance: float,
     zero_mean: bool = False,
+    secant: Secant | None = None,
 ) -> LocalMinimum:
     """Descend from (p, u) to a local minimum of ½ uᵀK⁻¹u + Σ φ(u), where `potential` returns φ.
 
     `p` and `u` = K p are not changed. `length` is the change of u over which φ″ changes noticeably;
     it limits the first step along a direction of negative curvature. `tolerance` limits
     `LocalMinimum.residual`. With `zero_mean`, K maps constant arrays to zero, the minimum is sought
-    among all u of mean zero, and the mean of p is chosen so that the gradient has mean zero. If the
-    method does not converge, `converged` of the result is False.
+    among all u of mean zero, and the mean of p is chosen so that the gradient has mean zero. With
+    `secant`, Newton steps use its result for φ″, where φ′ grows so fast that the tangent is poor.
+    If the method does not converge, `converged` of the result is False.
     """
     phi, slope, k = potential(u)
     energy = 0.5 * dot(p, u) + float(phi.sum())
@@ -81,9 +88,12 @@ def minimise_locally(
         if residual <= tolerance or steps >= MOST_STEPS:
             break
         steps += 1
-        x, Sx, at_edge, bent = _newton_step(K, r, k, energy, (radius, length), zero_mean=zero_mean)
+        h = k if secant is None else secant(u, p, slope, k)
+        least = _ENOUGH * tolerance / residual
+        limits = radius, length
+        x, Sx, at_edge, bent = _newton_step(K, r, h, energy, limits, least, zero_mean=zero_mean)
         negative |= bent
-        predicted = dot(r, x) + 0.5 * dot(x, Sx + k * x)
+        predicted = dot(r, x) + 0.5 * dot(x, Sx + h * x)
         size = math.sqrt(max(dot(x, Sx), 0.0))
         new_p = p + Sx
         new_u = K(new_p)  # in double precision; the products within a step are in single precision
@@ -110,6 +120,7 @@ def _newton_step(
     k: Array,
     energy: float,
     limits: tuple[float, float],
+    least: float,
     *,
     zero_mean: bool,
 ) -> tuple[Array, Array, bool, bool]:
@@ -117,17 +128,20 @@ def _newton_step(
 
     `limits` are the radius of the trust region in the norm (xᵀK⁻¹x)^½, infinite if there is none
     yet, and the largest change of u along a direction of negative curvature while there is none.
+    `least` is the smallest relative residual of the system that is needed.
+    Everything is in single precision, which is far more accurate than the step is exact.
     Return x, K⁻¹x, whether one of the limits ended the step, and whether a direction had negative
     curvature.
     """
     radius, length = limits
-    x, Sx, Hd, scaled = (np.zeros_like(r) for _ in range(4))
-    rest = -r
-    d = K(rest)
-    z, Sd = np.empty_like(r), rest.copy()
+    k = k.astype(np.float32)
+    rest = np.negative(r, dtype=np.float32)
+    x, Sx, Hd, scaled = (np.zeros_like(rest) for _ in range(4))
+    z, d, Sd = np.empty_like(rest), np.empty_like(rest), rest.copy()
+    K.single_precision(rest, out=d)
     rz = first = dot(rest, d)
     # Solve more accurately as the gradient falls, for superlinear convergence.
-    forcing = min(_FORCING, (first / max(abs(energy), 1e-300)) ** 0.25)
+    forcing = min(_FORCING, max(least, (first / max(abs(energy), 1e-300)) ** 0.25))
     inside = math.isinf(radius)  # no trust region yet
     xSd = xSx = dSd = 0.0
     for _ in range(_MOST_ITERATIONS):

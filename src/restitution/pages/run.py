@@ -15,6 +15,7 @@ from restitution.case.omissions import default_yield
 from restitution.contact.checks.resolution import NODES_PER_PATCH
 from restitution.curve.oblique import ObliquePoint
 from restitution.display import quantity
+from restitution.losses.losses import NAMES
 from restitution.pages.methods import methods
 from restitution.pages.page import Cell, Drawing, Listing, Page, PageTable, write_page
 from restitution.pages.run_in import run_in_parts
@@ -24,7 +25,9 @@ from restitution.plots.run import (
     abscissae,
     depth_maps_figure,
     has_map,
+    has_patches,
     load_displacement,
+    patch_law,
     pressure_map,
     restitution_figure,
     unloading_lines,
@@ -45,6 +48,8 @@ def write_run_page(out: Path) -> Path:
         if run.run_in:
             parts += run_in_parts(run.run_in, run.impacts, summary["run_in"])
         parts.append(_force(results))
+        if has_patches(results):
+            parts.append(_patches(results))
         if has_map(results):
             parts.append(_pressure(results))
         if has_maps(out):
@@ -93,6 +98,8 @@ def _restitution(results: xr.Dataset, abscissa: Abscissa) -> Drawing:
     cor = results["restitution"].values
     resolved = results["resolved"].values.astype(bool)
     errors = ["restitution_error", "total_error", "model_error"]
+    if (results["restitution_with_losses"].values < cor).any():
+        errors += ["restitution_with_losses", *(f"{name}_factor" for name in NAMES)]
     columns = zip(x, cor, resolved, *(results[name].values for name in errors), strict=True)
     few = int(np.count_nonzero(~resolved))
     return Drawing(
@@ -128,6 +135,23 @@ def _force(results: xr.Dataset) -> Drawing:
         f"{quantity(1e-6 * depth.max(), 'm')}",
         f"The loading curve{', and unloading curves from some of the depths' * bool(unloading)}.",
         PageTable("Curves", ["curve", "indentation (µm)", "force (N)"], rows),
+    )
+
+
+def _patches(results: xr.Dataset) -> Drawing:
+    gap, pressure = 1e9 * results["patch_gap"].values, 1e-6 * results["patch_pressure"].values
+    return Drawing(
+        "Waves below the grid",
+        patch_law(results),
+        f"Nominal pressure of the patches against the gap of their mean planes, from "
+        f"{pressure.min():.3g} to {pressure.max():.3g} MPa",
+        "The law of the waves that the grid does not carry, solved on periodic patches. Tension is "
+        "negative.",
+        PageTable(
+            "Law of the patches",
+            ["gap (nm)", "pressure (MPa)"],
+            [[float(g), float(p)] for g, p in zip(gap[::20], pressure[::20], strict=True)],
+        ),
     )
 
 

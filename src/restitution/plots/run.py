@@ -63,6 +63,8 @@ def run_figures(results: xr.Dataset) -> Iterator[tuple[str, Figure]]:
         yield f"restitution-{abscissa.name}", restitution_figure(results, abscissa)
     if has_map(results):
         yield "pressure", pressure_map(results)
+    if has_patches(results):
+        yield "patch-law", patch_law(results)
     if has_oblique(results):
         yield "oblique", oblique_figure(results)
 
@@ -76,6 +78,23 @@ def abscissae(results: xr.Dataset) -> list[Abscissa]:
 def has_map(results: xr.Dataset) -> bool:
     """Whether `results` contain a contact map; those of an ensemble do not."""
     return "pressure" in results and bool(results["pressure"].any())
+
+
+def has_patches(results: xr.Dataset) -> bool:
+    """Whether `results` contain the law of waves below the grid."""
+    return "patch_pressure" in results
+
+
+def patch_law(results: xr.Dataset) -> Figure:
+    """Draw the law of waves below the grid: pressure against gap."""
+    gap, pressure = 1e9 * results["patch_gap"].values, 1e-6 * results["patch_pressure"].values
+    zero = [Mark("y", 0.0)] if pressure.min() < 0 else []
+    linear = Chart(
+        Axis("gap of the mean planes", "nm"),
+        Axis("nominal pressure", "MPa"),
+        [Line(gap, pressure, "loading"), *zero],
+    )
+    return Figure(results.attrs.get("title", ""), [linear])
 
 
 def load_displacement(results: xr.Dataset) -> Figure:
@@ -172,6 +191,9 @@ def restitution_figure(results: xr.Dataset, abscissa: Abscissa) -> Figure:
             open_label=UNRESOLVED,
         )
     )
+    with_losses = results["restitution_with_losses"].values
+    if (with_losses < cor).any():
+        series.append(Line(x, with_losses, "with plate, waves and viscosity", dash=DASH_DOTTED))
     if {f"smooth_{variable}", "smooth_restitution"} <= set(results.variables):
         smooth = scale * results[f"smooth_{variable}"].values
         series.append(Line(smooth, results["smooth_restitution"].values, _SMOOTH, color=GREY))

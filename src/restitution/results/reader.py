@@ -56,7 +56,17 @@ from restitution.results.tables import (
 )
 
 Oblique = tuple[ObliquePoint, ...]
-LATER = frozenset({"pull_off_error_N", "adhesive_spacing_m"})
+LATER = frozenset(
+    {
+        "pull_off_error_N",
+        "adhesive_spacing_m",
+        "restitution_with_losses",
+        "plate_factor",
+        "waves_factor",
+        "viscosity_factor",
+        "loss_error",
+    }
+)
 """Columns that older tables lack; they are read as empty."""
 REQUIRED = tuple(name for name in COLUMNS if name not in LATER)
 

@@ -13,6 +13,7 @@ import numpy as np
 from restitution.case.case import Case
 from restitution.collision import Collision, collide
 from restitution.contact.prescribed.velocity import solve_at_velocity
+from restitution.contact.state import State
 from restitution.curve.columns import Array, array
 from restitution.curve.curve import Curve
 from restitution.curve.point import Point
@@ -39,11 +40,14 @@ class Sticking:
     error: float | None = None
 
 
-def sticking(case: Case, folder: Path, curve: Curve) -> Sticking | None:
+def sticking(
+    case: Case, folder: Path, curve: Curve, deepest: State | None = None
+) -> Sticking | None:
     """Find the velocity up to which the pair sticks, from the loss of energy L: ½ m* V² = L(V).
 
-    The search begins at the lowest velocity at which the pair rebounds on `curve`. Returns None
-    without adhesion or impact velocities, or if the pair sticks at the highest velocity.
+    The search begins at the lowest velocity at which the pair rebounds on `curve`. Its loading
+    paths continue that to `deepest` if they can. Returns None without adhesion or impact
+    velocities, or if the pair sticks at the highest velocity.
     """
     mass = case.pair().mass
     if mass is None or not case.interface.adhesive_energy or case.unloading.method != "path":
@@ -56,6 +60,10 @@ def sticking(case: Case, folder: Path, curve: Curve) -> Sticking | None:
         first -= 1
     begins = impacts[first]
     contact = case.refined(int(begins.refine)).realisation(0).contact(folder)
+    start = None
+    follows = contact.adhesion is not None and contact.adhesion.follows_path
+    if follows and deepest is not None and deepest.contact.grid == contact.grid:
+        contact, start = deepest.contact, deepest
     begin = _Impact(
         begins.impact_velocity,
         begins.loading_work - begins.unloading_work,
@@ -64,7 +72,7 @@ def sticking(case: Case, folder: Path, curve: Curve) -> Sticking | None:
     )
 
     def impact(velocity: float) -> _Impact:
-        return _Impact.of(collide(solve_at_velocity(contact, velocity)), velocity)
+        return _Impact.of(collide(solve_at_velocity(contact, velocity, start=start)), velocity)
 
     return _search(begin, impact, mass)
 
@@ -116,6 +124,8 @@ def curve_errors(
         values = np.array([own, *map(quantity_of, companions.others())])
         half = half_interval(len(values)) * values.std(axis=0, ddof=1)
         errors.append(np.abs(own - values.mean(axis=0)) + half)
+    if scales := companions.scales():
+        errors.append(scales.error(quantity_of, companions.area_at_pull_off))
     for low, high in companions.material_ends():
         ends = [np.abs(quantity_of(companions.curve(contact)) - own) for contact in (low, high)]
         errors.append(np.maximum(*ends))

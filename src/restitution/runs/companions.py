@@ -7,13 +7,15 @@ or other materials, and are compared with the first. COR is compared at equal im
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from pathlib import Path
 
 import numpy as np
 
+from restitution.case.below_grid import Splitting, split_surface
 from restitution.case.bodies import BodyTable
 from restitution.case.case import Case
 from restitution.case.interface import Yielding
@@ -23,6 +25,7 @@ from restitution.contact.contact import Contact, smooth
 from restitution.contact.interface import interface_of
 from restitution.contact.loading import solve
 from restitution.contact.models import COMPANION
+from restitution.contact.patch.law import PatchLaw, law_of_patches
 from restitution.contact.state import State
 from restitution.curve.columns import Array
 from restitution.curve.follow import Load, Unloading, follow
@@ -41,6 +44,9 @@ _TOLERANCE = 0.005  # allowed error of COR due to the steps of adhesive unloadin
 # the largest depth times the second factor. They are needed because other surfaces reach the same
 # loading work at other depths.
 _SHALLOWER, _DEEPER = 0.5, 1.3
+
+# Error of a bound that grows if patches have one of their own, beside that of a fine grid.
+_OF_GROWTH = 0.08
 
 
 def curve_of(
@@ -85,6 +91,50 @@ def _solve(contact: Contact, depth: float, start: State | None) -> State:
 
 
 @dataclass(frozen=True)
+class ScaleCurves:
+    """Curves that show the errors of a law of patches.
+
+    `single` has the curve of the law of each patch, and `weaker` that of weaker bodies if their
+    bound grows. `edge` is that of a patch (m).
+    """
+
+    own: WorkCurve
+    single: tuple[WorkCurve, ...]
+    weaker: WorkCurve | None
+    edge: float
+
+    @classmethod
+    def of(
+        cls, companions: Companions, law: PatchLaw, how: Splitting, progress: Say
+    ) -> ScaleCurves:
+        single, coarse, weaker = [], companions.coarse, None
+        for number, patch in enumerate(law.patches, 1):
+            progress(f"error: patch {number} of {len(law.patches)}")
+            alone = replace(law, patches=(patch,))
+            single.append(companions.curve(replace(coarse, adhesion=alone)))
+        if coarse.plasticity.grows:
+            weak = replace(coarse, plasticity=coarse.plasticity.scaled(1 - _OF_GROWTH))
+            weaker = companions.curve(weak)
+        return cls(companions.own, tuple(single), weaker, how.nodes * how.cell)
+
+    def error(self, quantity_of: Callable[[WorkCurve], Array], area: Array | float) -> Array:
+        """Error of a quantity due to the scatter of patches, and to a bound that grows.
+
+        The waves in the contact are one sample as large as its nominal `area` (m²).
+        """
+        own = quantity_of(self.own)
+        growth = 0 * own
+        if self.weaker is not None:
+            growth = np.abs(quantity_of(self.weaker) - own)
+        if len(self.single) < 2:
+            return np.asarray(growth)
+        deviation = np.std([quantity_of(curve) for curve in self.single], axis=0, ddof=1)
+        sample = np.sqrt(self.edge**2 / np.maximum(area, 1e-300))
+        scatter = deviation * np.hypot(half_interval(len(self.single)), sample)
+        return np.asarray(np.hypot(scatter, growth))
+
+
+@dataclass(frozen=True)
 class Companions:
     """The companion curves of `case` at `depths` (m); its files are relative to `folder`."""
 
@@ -94,7 +144,7 @@ class Companions:
 
     @cached_property
     def coarse(self) -> Contact:
-        """The contact of the case on cells twice as large."""
+        """The contact of the case on cells twice as large, with patches of waves twice as long."""
         return self._coarse(self.case)
 
     @cached_property
@@ -115,6 +165,34 @@ class Companions:
             progress(f"error: surface {number} of {SURFACES}")
             self._others.append(self._curve(self._coarse(self.case.variant(number))))
         return self._others
+
+    def scales(self, progress: Say = ignore) -> ScaleCurves | None:
+        """Curves that show the errors of waves below the grid; None without such waves."""
+        if not self._scales:
+            law, how = law_of_patches(self.coarse), self.case.splitting(self.folder)
+            if law is None or how is None:
+                return None
+            self._scales.append(ScaleCurves.of(self, law, how, progress))
+        return self._scales[0]
+
+    @property
+    def cell_area(self) -> float:
+        """Area (m²) of a cell of the run."""
+        return self._own.grid.cell_area
+
+    @property
+    def area_at_pull_off(self) -> float:
+        """Contact area (m²) of smooth bodies at pull-off, with the adhesion that is left."""
+        law, pair = law_of_patches(self.coarse), self.coarse.pair
+        return math.pi * pair.radius * law.length(pair) if law is not None else math.inf
+
+    @cached_property
+    def _scales(self) -> list[ScaleCurves]:
+        return []
+
+    @cached_property
+    def _own(self) -> Contact:
+        return self.case.contact(self.folder)
 
     def materials(self, work: Array) -> list[Array]:
         """Changes of COR at `work` (J) due to the spread of values from the material library.
@@ -188,7 +266,14 @@ class Companions:
         return [moved(self.case, end) for end in ENDS]
 
     def _coarse(self, case: Case) -> Contact:
-        return coarser_contact(case.contact(self.folder))
+        contact, how = case.contact(self.folder), case.splitting(self.folder)
+        law = law_of_patches(contact)
+        if law is not None and how is not None:
+            wide = replace(how, wavelength=2 * how.wavelength)
+            surface = split_surface(case, self.folder, contact.surface, wide)
+            other = replace(law, patches=surface.patches, wavelength=surface.wavelength)
+            contact = replace(contact, surface=surface, adhesion=other)
+        return coarser_contact(contact)
 
     def _curve(self, contact: Contact) -> WorkCurve:
         return curve_of(contact, self.depths, self.case.unloading.method)

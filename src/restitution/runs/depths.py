@@ -18,6 +18,7 @@ from restitution.contact.prescribed.velocity import solve_at_velocity
 from restitution.contact.state import State
 from restitution.curve.follow import Load, Unloading
 from restitution.runs.messages import naming_keys
+from restitution.surfaces import Surface
 
 
 def later_touches(case: Case, folder: Path, factors: Iterable[int]) -> dict[int, float]:
@@ -25,12 +26,15 @@ def later_touches(case: Case, folder: Path, factors: Iterable[int]) -> dict[int,
 
     A coarse grid touches later because the highest point of the surface lies between its nodes.
     """
-    R, touch = case.pair().radius, {}
-    for factor in factors:
-        surface = case.refined(factor).surface(folder)
-        x, y = surface.grid.x[:, None], surface.grid.y[None, :]
-        touch[factor] = float(((x * x + y * y) / (2 * R) - surface.height).min())
+    R = case.pair().radius
+    touch = {factor: first_touch(case.refined(factor).surface(folder), R) for factor in factors}
     return {factor: touch[factor] - touch[max(touch)] for factor in touch}
+
+
+def first_touch(surface: Surface, radius: float) -> float:
+    """Approach (m) at which a sphere of the reduced `radius` (m) touches the rough `surface`."""
+    x, y = surface.grid.x[:, None], surface.grid.y[None, :]
+    return float(((x * x + y * y) / (2 * radius) - surface.height).min())
 
 
 def load_to(case: Case, contact: Contact, depth: float, start: State | None = None) -> State:

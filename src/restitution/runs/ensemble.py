@@ -36,9 +36,25 @@ from restitution.runs.result_warnings import too_coarse_for_adhesion, unresolved
 from restitution.runs.run import run_case
 
 # Fields that combine only surfaces on which an impact has this maximum indentation.
-_OF_IMPACTS = ("restitution", "impact_velocity", "restitution_error", "model_error", "sticks")
+_OF_IMPACTS = (
+    "restitution",
+    "impact_velocity",
+    "restitution_error",
+    "model_error",
+    "sticks",
+    "restitution_with_losses",
+    "loss_error",
+)
 # Keys of `summary.json` that the run on one surface gives.
 _OF_ONE = ("model", "materials", "conventions", "derived", "device", "kernels", "versions")
+
+
+def _of_known(values: list[float]) -> float:
+    """Mean of the known values; surfaces that stick have no factor."""
+    known = [value for value in values if not math.isnan(value)]
+    return float(np.mean(known)) if known else math.nan
+
+
 # Fields of an ensemble's curve that are not means, and the functions that combine the values of
 # the surfaces. Flags are not listed: they are true if they are true for all surfaces.
 _WORST: dict[str, Callable[[list[float]], float]] = {
@@ -48,6 +64,7 @@ _WORST: dict[str, Callable[[list[float]], float]] = {
     "median_patch_nodes": min,
     "convolutions": sum,
     "refine": max,
+    **dict.fromkeys(("plate_factor", "waves_factor", "viscosity_factor"), _of_known),
 }
 
 

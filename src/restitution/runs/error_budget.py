@@ -48,7 +48,7 @@ MISSING_BAND = 0.03
 
 NOT_INCLUDED = (
     "the model (range of adhesion and model of plasticity, see model_error; half-space), values "
-    "given in the case file, rate effects, elastic waves"
+    "given in the case file, rate effects of yielding"
 )
 
 
@@ -115,6 +115,16 @@ def grid_error(
     band = _BAND * octaves * near
     floor = np.array([_floor(point) for point in points])
     return np.sqrt(near**2 + band**2 + unseen**2 + floor**2), band
+
+
+def law_error(change: Array, by_law: Array, work: Array) -> Array:
+    """Discretisation error of COR of each point of a contact whose waves are in patches.
+
+    No wave is left out, and the law is smooth, so few nodes are enough (docs/two-scales.md).
+    `by_law` is the error of the law; for the others see `grid_error`.
+    """
+    near, law = _smoothed(change**2, work, _NEAR_GRID), _smoothed(by_law**2, work, _NEAR_SURFACE)
+    return np.asarray(np.sqrt(near + law))
 
 
 def widened_error(
@@ -219,8 +229,13 @@ class ErrorBudget:
         work, waves = array(points, "loading_work"), OmittedWaves.of(surface)
         self._progress("error: cells twice as large")
         change = array(points, "restitution") - companions.own.at(work)
-        unseen = unseen_yield(companions, waves, points)
-        errors, band = grid_error(change, unseen, work, points, waves.octaves)
+        if scales := companions.scales(self._progress):
+            area = array(points, "contact_nodes") * companions.cell_area
+            by_law = scales.error(lambda curve: curve.at(work), area)
+            errors, band = law_error(change, by_law, work), np.zeros(work.size)
+        else:
+            unseen = unseen_yield(companions, waves, points)
+            errors, band = grid_error(change, unseen, work, points, waves.octaves)
         columns = {"discretisation_error": errors} | spread_errors(
             companions, work, self._progress, scattered=self._scattered, parts=self.parts
         )

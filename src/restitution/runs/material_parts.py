@@ -31,7 +31,7 @@ def material_parts(companions: Companions, work: Array) -> list[MaterialPart]:
     case = companions.case
     tables = {"first": case.first} | ({"second": case.second} if case.second else {})
     parts = [
-        _part(f"{body}.{key}", str(table.material), known, _change(companions, work, body, key))
+        _part(f"{body}.{key}", table.material or body, known, _change(companions, work, body, key))
         for body, table in tables.items()
         for key, known in table.from_library().items()
         if known.low != known.high

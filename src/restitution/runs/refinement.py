@@ -18,6 +18,7 @@ from restitution.contact.checks.resolution import (
 from restitution.contact.cohesive.law import Cohesive
 from restitution.contact.contact import Contact
 from restitution.contact.interface import interface_of
+from restitution.contact.jkr.limit import JKRLimit
 from restitution.contact.state import State
 from restitution.display import duration, quantity
 from restitution.errors import DomainError, NotConvergedError
@@ -99,11 +100,11 @@ def least_refined(case: Case, folder: Path, warn: Say = ignore) -> Case:
 
 def with_chosen_adhesion(case: Case, contact: Contact, warn: Say = ignore) -> Case:
     """State the model of adhesion of `contact` in `case`, so that all its grids use this model."""
-    if contact.adhesion is None or case.interface.adhesion is not None:
+    if not contact.adhesive or case.interface.adhesion is not None:
         return case
     for line in no_range(contact):
         warn(line)
-    return _with_adhesion(case, contact.adhesion.label)
+    return _with_adhesion(case, "jkr" if isinstance(contact.adhesion, JKRLimit) else "cohesive")
 
 
 class _Level:
@@ -212,8 +213,10 @@ def _with_affordable_adhesion(case: Case, folder: Path, warn: Say) -> Case:
     interface = case.interface
     if interface.adhesion is not None or not interface.adhesive_energy or interface.needs_jkr:
         return case
-    grid = case.grid.grid() or case.refined(1).realisation(0).surface(folder).grid
     cohesive = _with_adhesion(case, "cohesive")
+    if cohesive.splitting(folder) is not None:
+        return cohesive
+    grid = case.grid.grid() or case.refined(1).realisation(0).surface(folder).grid
     z0 = interface.equilibrium_separation
     needed = Cohesive(interface.adhesive_energy, z0).coarsest_spacing(case.pair())
     if any(_is_affordable(cohesive, divided(grid, n), needed) for n in FACTORS):

@@ -9,6 +9,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
+from restitution.case.below_grid import notice_of
 from restitution.case.case import Case
 from restitution.case.derived import deepest_indentation, derived_quantities
 from restitution.case.omissions import omissions
@@ -18,7 +19,7 @@ from restitution.contact.interface import interface_of
 from restitution.contact.jkr.unloading_curve import unloading_curve
 from restitution.contact.plasticity.cavity import FULL_CONSTRAINT
 from restitution.contact.state import State
-from restitution.curve.curve import largest
+from restitution.curve.curve import UnloadingCurve, largest
 from restitution.curve.follow import Impact, follow
 from restitution.errors import DomainError, NotConvergedError, RestitutionError
 from restitution.results.interruption import hold_signals
@@ -39,6 +40,7 @@ from restitution.runs.error_budget import (
     total_error_summary,
 )
 from restitution.runs.log import RunLog, Say, ignore, solved_with
+from restitution.runs.losses import loss_warnings, unloading_of, with_losses
 from restitution.runs.messages import input_warnings, require_possible
 from restitution.runs.oblique import is_oblique, oblique_points
 from restitution.runs.refinement import with_chosen_adhesion, with_chosen_grids
@@ -51,6 +53,7 @@ from restitution.runs.result_warnings import (
 )
 from restitution.runs.run_in import run_in
 from restitution.runs.smooth import smooth_curve
+from restitution.runs.two_scales import patch_curve, solve_patches, told
 from restitution.surfaces import describe
 
 CONVENTIONS = {
@@ -84,6 +87,7 @@ class _Run(RunLog):
     sticking: Sticking | None = None
     maps: list[DepthMaps] = field(default_factory=list)
     run_in: dict[str, Any] = field(default_factory=dict)
+    unloading: dict[float, UnloadingCurve] = field(default_factory=dict)
 
 
 def run_case(
@@ -115,14 +119,18 @@ def run_case(
     ):
         case = with_chosen_grids(case, folder, run.warn)
         contact = case.contact(folder)
+        if (notice := notice_of(case, folder)) is not None:
+            run.warn(notice)
+        solve_patches(contact, run.progress)
         case = with_chosen_adhesion(case, contact, run.warn)
         deepest = deepest_indentation(case)
         require_possible(contact, deepest)
-        for warning in omissions(case) + input_warnings(contact, deepest, case.prescribed):
+        for warning in _input_warnings(case, contact, deepest):
             run.warn(warning)
         with out.tables():
             failure = _load_and_unload(case, folder, contact, out, run, go_on=errors)
-        run.sticking = sticking(case, folder, out.curve)
+        out.put_curve(with_losses(case.pair(), case.losses(), out.curve.points, run.unloading))
+        run.sticking = sticking(case, folder, out.curve, run.deepest)
         if errors and case.total_error and out.curve.points:
             budget = ErrorBudget(case, folder, out.curve.points, run.progress, run.material_parts)
             try:
@@ -145,6 +153,11 @@ def run_case(
     return run.summary
 
 
+def _input_warnings(case: Case, contact: Contact, deepest: float) -> list[str]:
+    of_contact = input_warnings(contact, deepest, case.prescribed)
+    return [*omissions(case), *loss_warnings(case), *of_contact]
+
+
 def _write_results(
     case: Case, text: str, out: ResultsFolder, run: _Run, deepest: State
 ) -> dict[str, Any]:
@@ -153,6 +166,7 @@ def _write_results(
     dataset = results_dataset(out, deepest)
     with suppress(RestitutionError):  # if the smooth curve fails, the results omit it
         dataset = dataset.assign(smooth_curve(deepest.contact, out.curve.points))
+    dataset = dataset.assign(patch_curve(deepest.contact))
     dataset.attrs = status_attributes(summary) | case_attributes(summary, text)
     points = out.curve.points
     write_maps(out.path, run.maps[: len(points)], points, _MAPS_ALONG)
@@ -199,6 +213,8 @@ def _keep(impact: Impact, case: Case, out: ResultsFolder, run: _Run) -> None:
             run.maps.append(DepthMaps.of(state))
         out.add(impact.point)
         run.deepest = state
+    if (back := unloading_of(impact)) is not None:
+        run.unloading[impact.point.indentation] = back
     if impact.load.unload and state.contact_nodes:
         out.add_unloading(impact.unloading, impact.load.touch)
         run.unloading_checks.append(_check(state, impact.unloading, collision))
@@ -229,6 +245,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> d
             "plasticity": contact.plasticity.label,
             **interface_of(contact).describe(case.unloading.method),
             "half_space": "free, Love cells, zero-padded FFT",
+            "below_grid": told(contact),
             **asdict(contact.grid),
             "refine": case.grid.refine,
             "yield_pressure": case.yielding().source,

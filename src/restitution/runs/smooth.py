@@ -45,7 +45,8 @@ def smooth_curve(
 
     def load(depth: float) -> Load:
         spacing = _WIDTH * predicted_radius(pair, depth, contact.hardness) / _NODES
-        bodies = replace(contact, surface=smooth(Grid((_NODES, _NODES), (spacing, spacing))))
+        on = smooth(Grid((_NODES, _NODES), (spacing, spacing)))
+        bodies = replace(contact, surface=on, adhesion=None)
 
         def to(_: State | None) -> State:
             check()

@@ -89,7 +89,7 @@ def generate_surface(
             cannot represent the waves.
         TypeError: An argument is unknown.
     """
-    spectrum = _spectrum(kind, waves)
+    spectrum = spectrum_of_kind(kind, waves)
     if not (math.isfinite(rms) and rms > 0):
         raise SurfaceError(
             f"{rms:g} m is not a positive length; give the rms height, such as 0.1 um",
@@ -123,7 +123,8 @@ def generate_surface(
     return Surface(height, grid, provenance)
 
 
-def _spectrum(kind: RoughnessKind, waves: Waves) -> Spectrum:
+def spectrum_of_kind(kind: RoughnessKind, waves: Waves) -> Spectrum:
+    """The spectrum of `generate_surface`, whose errors it raises."""
     if kind not in WAVES:
         raise SurfaceError(
             f"{kind!r} is unknown; choose 'exponential', 'gaussian' or 'self-affine'",

@@ -71,6 +71,16 @@ class Autocorrelated:
         H: Array = np.sqrt(np.maximum(rfft2(R).real, 0.0))
         return _without_short_waves(H, grid, self.shortest)
 
+    def density(self, qx: Array, qy: Array, grid: Grid) -> Array:
+        """Power spectral density at wave vectors (rad/m), up to a factor, without `shortest`."""
+        c, s = math.cos(self.lay), math.sin(self.lay)
+        along, across = (c * qx + s * qy), (c * qy - s * qx)
+        q2 = (along * self.correlation_length[0]) ** 2 + (across * self.correlation_length[1]) ** 2
+        scale = math.prod(self.correlation_length)
+        if self.kind == "exponential":
+            return np.asarray(2 * math.pi * 2.3 * scale * (2.3**2 + q2) ** -1.5)
+        return np.asarray(math.pi / 2.3 * scale * np.exp(-q2 / (4 * 2.3)))
+
     def parameters(self, grid: Grid) -> dict[str, str | float]:
         """Provenance entries that describe these waves on `grid`."""
         axes = ("x", "y") if self.lay == 0 else ("along_lay", "across_lay")
@@ -129,6 +139,15 @@ class SelfAffine:
         H: Array = np.maximum(q / q_r, 1.0) ** -(self.hurst + 1.0)
         H[0, 0] = 0.0
         return _without_short_waves(H, grid, self.shortest)
+
+    def density(self, qx: Array, qy: Array, grid: Grid) -> Array:
+        """Power spectral density at wave vectors (rad/m), up to a factor, without `shortest`.
+
+        Without `rolloff`, the power law extends to the size of `grid`.
+        """
+        longest = max(grid.size) if self.rolloff is None else self.rolloff
+        q = np.hypot(qx, qy) * longest / (2 * math.pi)
+        return np.asarray(np.maximum(q, 1.0) ** (-2 * (self.hurst + 1.0)))
 
     def parameters(self, grid: Grid) -> dict[str, str | float]:
         """Provenance entries that describe these waves on `grid`."""

@@ -26,6 +26,7 @@ _UNITS = {
     "N": "N",
     "J/m^2": "J m-2",
     "m/s": "m s-1",
+    "s": "s",
     "rad": "rad",
     "rad/s": "rad s-1",
 }

@@ -1,7 +1,7 @@
 "use strict";
 // The page of `restitution app`. The case is a tree of tables, as in a case file; fields of the form
-// show its keys. Each change requests a new curve. If no change follows, the complete run is
-// requested.
+// show its keys. Each change requests a new curve, which may begin with previews. If no change
+// follows, the complete run is requested.
 
 const token = location.hash.slice(1);
 const tab = crypto.randomUUID();
@@ -10,6 +10,10 @@ const $ = (id) => document.getElementById(id);
 const SHORT_REST = 100;
 // Time (ms) without a change after which the complete run is requested.
 const REST = 600;
+// Time (ms) after which curves that do not belong to the values in the form are drawn faint.
+const FAINT = 400;
+// Time (ms) after which the page tells how long it has been computing.
+const LONG = 3000;
 const DASHES = ["dash", "dot", "dashdot", "longdash", "solid"];
 const PIN_COLOURS = ["#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#d55e00"];
 // Units that a slider writes, smallest first.
@@ -20,7 +24,9 @@ const SLIDER_UNITS = {
 
 let form = null;
 let content = {};
-let curve = { rows: [], figures: {}, errors: false };
+// The curve that is drawn. `preview` says in words what a preview leaves out. While the curve of the case replaces a
+// preview, from its shallow end, `under` is the preview below it.
+let curve = { rows: [], figures: {}, errors: false, preview: "", under: null };
 let cursor = null; // index of the depth at the cursor; null: the deepest depth
 let pins = [];
 let surfaceKey = "";
@@ -49,7 +55,21 @@ async function stream(name, values, signal, take) {
   }
 }
 
-function say(words) { $("status").textContent = words; }
+let saying = null; // timer of the time beside the status
+
+// Show `words` as the status and, while the page is `busy` with one request (an object), the time since its beginning.
+function say(words, busy) {
+  $("status").textContent = words;
+  clearInterval(saying);
+  $("elapsed").textContent = "";
+  if (!busy) return;
+  const tell = () => {
+    const time = performance.now() - busy.since;
+    if (time > LONG) $("elapsed").textContent = `${Math.round(time / 1000)} s`;
+  };
+  tell();
+  saying = setInterval(tell, 1000);
+}
 
 // ---- the tree of tables -----------------------------------------------------------------------
 
@@ -338,21 +358,23 @@ async function ask() {
   if (asking) asking.abort.abort();
   const mine = { abort: new AbortController(), since: performance.now(), drawn: false };
   asking = mine;
-  say("computing…");
-  let failed = false;
+  say("computing…", mine);
+  setTimeout(() => { if (asking === mine && !mine.drawn) mark(true); }, FAINT);
+  let failed = false, whole = false;
   const sent = structuredClone(content);
   try {
     await stream("curve", { tab, content: sent }, mine.abort.signal, (line) => {
       if (asking !== mine) return;
       if (line.problems) { failed = true; mark(true); showProblems(line.problems); say("not computed: correct the marked value"); }
       else if (line.error) { failed = true; mark(true); showError(line.error); say(line.lost ? "stopped" : "not computed"); }
+      else if (line.next) say(`${previewOf(curve)}; next: ${line.next} (${line.progress})`, mine);
       else if (line.curve) {
         const received = performance.now();
-        takeCurve(line, sent);
-        if (line.progress) { say(line.progress); return; }
+        takeCurve(line, sent, mine);
+        if (!mine.drawn) last = performance.now() - mine.since;
         mine.drawn = true;
-        last = performance.now() - mine.since;
-        record(mine.since, line.seconds, received);
+        whole = line.seconds !== undefined;
+        record(mine.since, line, received);
         if (waiting) ask();
       }
     });
@@ -362,23 +384,29 @@ async function ask() {
   if (asking !== mine) return;
   asking = null;
   updateText();
-  if (!failed && mine.drawn && !waiting) resting = setTimeout(drawSmooth, SHORT_REST);
+  if (!failed && whole && !waiting) resting = setTimeout(drawSmooth, SHORT_REST);
 }
 
 // Report to the benchmark when a curve was requested, received and drawn, and how long the solve took (ms).
-function record(start, seconds, received) {
-  const detail = { asked: start, solve: 1000 * seconds, received, drawn: performance.now() };
+function record(start, line, received) {
+  const detail = { asked: start, solve: 1000 * line.spent, received, drawn: performance.now(), preview: line.preview || "", partial: Boolean(line.progress) };
   document.dispatchEvent(new CustomEvent("curve", { detail }));
 }
 
-function takeCurve(line, sent) {
+const previewOf = ({ preview }) => `preview: ${preview}`;
+
+function takeCurve(line, sent, request) {
   showProblems(line.failure ? problemsOf(line.failure) : {});
-  curve = { rows: line.curve, figures: line.figures, errors: false, content: sent };
+  const before = curve.preview ? curve : curve.under;
+  const under = line.progress && !line.preview && before && before.request === request ? before : null;
+  curve = { rows: line.curve, figures: line.figures, errors: false, content: sent, preview: line.preview || "", under, request };
   mark(false);
   showWarnings(line);
   drawCurves();
   drawNumbers();
-  if (!line.progress) { say(`${line.curve.length} depths in ${line.seconds.toFixed(2)} s`); }
+  if (curve.preview) say(`${previewOf(curve)}${line.progress ? ` (${line.progress})` : ""}; refining…`, request);
+  else if (line.progress) say(`${line.progress}${under ? `; the rest is a ${previewOf(under)}` : ""}`, request);
+  else say(`${line.curve.length} depths in ${line.seconds.toFixed(2)} s`);
 }
 
 const problemsOf = (failure) => ({ "": `Some depths are missing. ${failure}` });
@@ -402,16 +430,16 @@ async function drawSmooth() {
 async function runWhole() {
   const mine = new AbortController();
   running = mine;
-  const sent = structuredClone(content);
-  say("computing the errors…");
+  const sent = structuredClone(content), busy = { since: performance.now() };
+  say("computing the errors…", busy);
   try {
     await stream("run", { tab, content: sent, grids: 1 }, mine.signal, (line) => {
       if (running !== mine || asking) return;
-      if (line.progress) say(`computing the errors: ${line.progress}`);
+      if (line.progress) say(`computing the errors: ${line.progress}`, busy);
       else if (line.problems) showProblems(line.problems);
       else if (line.error) { showError(line.error); say("the errors are unknown"); }
       else if (line.results) {
-        curve = { rows: line.results, figures: line.figures, errors: true, content: sent };
+        curve = { rows: line.results, figures: line.figures, errors: true, content: sent, preview: "", under: null };
         if (line.failure) showProblems(problemsOf(line.failure));
         showWarnings(line);
         drawCurves();
@@ -444,12 +472,26 @@ function draw(id, spec, traces = [], shapes = []) {
   if (!spec) { Plotly.purge($(id)); $(id).dataset.drawn = ""; return; }
   const layout = themed(structuredClone(spec.layout));
   layout.shapes = [...(layout.shapes || []), ...shapes];
+  for (const name of ["x", "y"]) widen(layout[`${name}axis`], traces.flatMap((trace) => (trace.meta === "wide" ? trace[name] : [])));
   if (innerWidth < 600 || $(id).clientHeight < 300) { // the legend would leave no room for the plot
     layout.showlegend = false;
     layout.margin = { l: 55, r: 10, t: 15, b: 45 };
   }
   $(id).dataset.drawn = "yes";
   return Plotly.react($(id), [...spec.data, ...traces], layout, { responsive: true, displaylogo: false, showSendToCloud: false });
+}
+
+// Let an axis with fixed ends include `values`.
+function widen(axis, values) {
+  const at = axis && axis.type === "log" ? values.filter((value) => value > 0).map(Math.log10) : values.filter(Number.isFinite);
+  if (!axis || !at.length) return;
+  const allowed = axis.autorangeoptions || {};
+  const [first, last] = axis.range || [allowed.minallowed, allowed.maxallowed];
+  const margin = 0.03 * (Math.max(...at, last ?? -Infinity) - Math.min(...at, first ?? Infinity));
+  const low = first > Math.min(...at) ? Math.min(...at) - margin : first;
+  const high = last < Math.max(...at) ? Math.max(...at) + margin : last;
+  if (axis.range) axis.range = [low, high];
+  else if (axis.autorangeoptions) axis.autorangeoptions = { minallowed: low, maxallowed: high };
 }
 
 const depthNow = () => Math.min(cursor === null ? Infinity : cursor, curve.rows.length - 1);
@@ -461,17 +503,28 @@ function drawCurves() {
   const at = curve.rows[depthNow()];
   const line = (x) => ({ type: "line", yref: "paper", y0: 0, y1: 1, x0: x, x1: x, line: { color: css("--soft"), width: 1 } });
   const shapes = at && at[KEYS[what]] > 0 ? [line(scale * at[KEYS[what]])] : [];
-  const traces = [...modelBand(KEYS[what], scale), ...pins.map((pin) => pinTrace(pin, KEYS[what], scale, "restitution"))];
-  draw("cor", curve.figures[what], traces, shapes);
-  draw("force", curve.figures.force, pins.map((pin) => pinTrace(pin, "max_indentation_m", 1e6, "force_N")), at ? [line(1e6 * at.max_indentation_m)] : []);
+  const others = [...(curve.under ? [underneath(curve.under)] : []), ...pins];
+  const traces = [...modelBand(KEYS[what], scale), ...others.map((other) => pinTrace(other, KEYS[what], scale, "restitution"))];
+  draw("cor", told(curve.figures[what]), traces, shapes);
+  draw("force", told(curve.figures.force), others.map((other) => pinTrace(other, "max_indentation_m", 1e6, "force_N")), at ? [line(1e6 * at.max_indentation_m)] : []);
   const cors = curve.rows.map((row) => row.restitution);
   $("cor").setAttribute("aria-label", cors.length
-    ? `Coefficient of restitution from ${Math.min(...cors).toFixed(3)} to ${Math.max(...cors).toFixed(3)} against ${what === "velocity" ? "impact velocity" : "indentation"}; the numbers are in a table below`
+    ? `${curve.preview ? "Preview of the c" : "C"}oefficient of restitution from ${Math.min(...cors).toFixed(3)} to ${Math.max(...cors).toFixed(3)} against ${what === "velocity" ? "impact velocity" : "indentation"}; the numbers are in a table below`
     : "Coefficient of restitution: nothing computed");
   $("cursor").max = Math.max(0, curve.rows.length - 1);
   $("cursor").value = depthNow();
   showCursor();
 }
+
+// The figure of a preview: its own curve is dashed, and the legend says what it is.
+function told(spec) {
+  if (!spec || !curve.preview) return spec;
+  const data = spec.data.map((trace) => (trace.mode === "lines+markers"
+    ? { ...trace, name: escaped(previewOf(curve)), line: { ...trace.line, dash: "dash" } } : trace));
+  return { ...spec, data };
+}
+
+const underneath = ({ rows, preview }) => ({ rows, name: escaped(previewOf({ preview })), colour: css("--soft"), dash: "dash" });
 
 // The band of COR ± the error of the plasticity model. The live curve has this error, but no total error.
 function modelBand(key, scale) {
@@ -490,8 +543,8 @@ function modelBand(key, scale) {
 function pinTrace(pin, key, scale, quantity) {
   const rows = pin.rows.filter((row) => row[key] > 0);
   return {
-    type: "scatter", mode: "lines", name: pin.name, x: rows.map((row) => scale * row[key]), y: rows.map((row) => row[quantity]),
-    line: { color: pin.colour, dash: pin.dash, width: 2 }, hovertemplate: `%{x:.4g}<br>%{y:.4g}<extra>${escaped(pin.name)}</extra>`,
+    type: "scatter", mode: "lines", name: pin.name, meta: "wide", x: rows.map((row) => scale * row[key]), y: rows.map((row) => row[quantity]),
+    line: { color: pin.colour, dash: pin.dash, width: 2 }, hovertemplate: `%{x:.4g}<br>%{y:.4g}<extra>${pin.name}</extra>`,
   };
 }
 
@@ -503,7 +556,7 @@ function showCursor() {
   if (!row) { $("cursor-text").textContent = ""; return; }
   const velocity = row.impact_velocity_m_per_s === null ? "" : `${digits(row.impact_velocity_m_per_s)} m/s, `;
   const total = curve.errors && row.total_error !== null ? ` ± ${digits(row.total_error, 2)}` : "";
-  const words = `${velocity}${digits(1e9 * row.max_indentation_m)} nm, ${digits(row.force_N)} N: COR ${row.restitution.toFixed(4)}${total} (model ± ${digits(row.model_error, 2)})${row.resolved ? "" : ", not resolved"}`;
+  const words = `${velocity}${digits(1e9 * row.max_indentation_m)} nm, ${digits(row.force_N)} N: COR ${row.restitution.toFixed(4)}${total} (model ± ${digits(row.model_error, 2)})${row.resolved ? "" : ", not resolved"}${curve.preview ? " – preview" : ""}`;
   $("cursor-text").textContent = words;
   $("cursor").setAttribute("aria-valuetext", words);
 }
@@ -561,7 +614,7 @@ function pin() {
   const before = pins.length ? pins[pins.length - 1].content : null;
   pins.push({
     number, name: `pin ${number}`, rows: curve.rows, content: structuredClone(curve.content),
-    words: before ? differences(before, curve.content) : "the first pin",
+    words: (before ? differences(before, curve.content) : "the first pin") + (curve.preview ? `; ${previewOf(curve)}` : ""),
     colour: PIN_COLOURS[(number - 1) % PIN_COLOURS.length], dash: DASHES[(number - 1) % DASHES.length],
   });
   drawPins();

@@ -14,7 +14,7 @@ and the paraboloid outside the grid, attract but are rigid.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
@@ -41,6 +41,8 @@ _REACH = 12.0
 _TOLERANCE, _LEAST_TOLERANCE = 100.0, 1e-7
 # An equilibrium counts as unique if the bound that `is_unique` computes is below this value.
 _UNIQUE = 0.7
+# Gaps that differ by less than this fraction of z₀ are joined by the tangent, not by the chord.
+_TANGENT = 1e-3
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -54,6 +56,7 @@ class CohesiveState(State):
         unaccounted: Work of the force minus the change of energy (J), summed over all steps without
             a jump so far. It differs from zero only by the error of integration.
         smallest_gap: Smallest gap between the surfaces (m).
+        before: The state before on the same branch of equilibria; None at its beginning.
     """
 
     interaction_energy: float = 0.0
@@ -61,6 +64,7 @@ class CohesiveState(State):
     jumps: int = 0
     unaccounted: float = 0.0
     smallest_gap: float = math.inf
+    before: CohesiveState | None = field(default=None, repr=False)
 
     @property
     def force(self) -> float:
@@ -112,6 +116,27 @@ class BoundedLaw:
         stiff[below < 0] = self._stiff
         return energy, slope, stiff
 
+    def secant(self, u: Array, p: Array, slope: Array, stiff: Array) -> Array:
+        """Slope (Pa/m) of the chord between the gap of a node and the gap at its pressure `p`.
+
+        The repulsion is so steep that Newton steps along its tangent would be far too short or too
+        long, but the pressures of a step are nearly right.
+        """
+        gap, z0 = self.base + u, self._law.equilibrium_separation
+        at = np.flatnonzero((p > 0) | (gap < z0))
+        limit = np.broadcast_to(-self._slope, p.shape).ravel()[at]
+        wanted = np.maximum(p.ravel()[at], 0.0)
+        goal = self._law.gap_at(np.minimum(wanted, limit))
+        if not self.yields:
+            goal -= np.maximum(wanted - limit, 0.0) / self._stiff
+        way = gap.ravel()[at] - goal
+        far = np.abs(way) > _TANGENT * z0
+        chord = np.zeros_like(way)
+        np.divide((p + slope).ravel()[at], way, out=chord, where=far)
+        slopes: Array = stiff.copy()
+        slopes.ravel()[at] = np.where(chord > 0, chord, slopes.ravel()[at])
+        return slopes
+
     def beyond(self, u: Array) -> Array:
         """Distance (m) by which the gap is smaller than `least`: the new plastic displacement."""
         return np.maximum(self.least - self.base - u, 0.0)
@@ -157,6 +182,7 @@ def solve_cohesive(
         length=0.5 * z0,
         tolerance=max(_TOLERANCE * residual, _LEAST_TOLERANCE) * z0,
         zero_mean=contact.periodic,
+        secant=law.secant,
     )
     if not solved.converged:
         raise NotConvergedError(
@@ -263,6 +289,7 @@ def on_box(state: CohesiveState, box: Box, *, residual: float) -> CohesiveState:
             adhesive_loss=state.adhesive_loss,
             jumps=state.jumps,
             unaccounted=state.unaccounted,
+            before=state.before,
         )
     )
 

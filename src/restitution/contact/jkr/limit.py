@@ -30,9 +30,8 @@ from restitution.contact.state import State
 from restitution.errors import CaseError
 from restitution.theory import JKR, MaugisDugdale
 
-# Relative tolerance of the integral of an adhesive force. The force jumps as asperities attach,
-# which limits the accuracy. A relative error of 1.5e-3 of the loading work changes COR by at most
-# 0.00075.
+# A relative error of 1.5e-3 of the loading work changes COR by at most 0.00075. The force jumps as
+# asperities attach, which limits the accuracy.
 _TOLERANCE = 1.5e-3
 # With four or more nodes per pull-off radius and `CrackClosure`, the pull-off force of smooth
 # spheres is within 2.3 % of JKR. This held for all tested positions of the apex relative to the
@@ -60,6 +59,7 @@ class JKRLimit(Adhesion):
         detachment: `CrackClosure` or `PohrtPopov`.
         equilibrium_separation: Gap z₀ (m) at which the traction is zero, for the errors due to the
             neglected range.
+        work_tolerance: Relative error of the loading work where it is integrated (dimensionless).
 
     Raises:
         CaseError: A value is impossible.
@@ -72,6 +72,7 @@ class JKRLimit(Adhesion):
     approach: Approach = AdhesiveApproach()
     detachment: Detachment = CrackClosure()
     equilibrium_separation: float = EQUILIBRIUM_SEPARATION
+    work_tolerance: float = _TOLERANCE
 
     label = "jkr"
     bytes_per_node = 150.0
@@ -79,6 +80,10 @@ class JKRLimit(Adhesion):
     def __post_init__(self) -> None:
         set_field(self, "work_of_adhesion", "J/m2")
         set_field(self, "equilibrium_separation", "m")
+        set_field(self, "work_tolerance", "")
+
+    def with_work_tolerance(self, tolerance: float) -> JKRLimit:
+        return replace(self, work_tolerance=tolerance)
 
     def describe(self, unloading: str) -> dict[str, str]:
         return {
@@ -124,7 +129,7 @@ class JKRLimit(Adhesion):
         gain = self.work_of_adhesion * state.contact_area
         mechanical = state.stored_energy + state.plastic_work
         known = self.approach.in_equilibrium and plasticity.exact_work
-        if known and gain <= 2 * _TOLERANCE * mechanical:
+        if known and gain <= 2 * self.work_tolerance * mechanical:
             # The adhesive work is set to its largest possible value, the work of adhesion times the
             # contact area. In contacts for which it was integrated, it was 0.37 to 0.93 times this
             # value, and above 0.7 times in most of them. The error covers this range.
@@ -132,13 +137,15 @@ class JKRLimit(Adhesion):
         balanced = self.approach.in_equilibrium and balances_are_reliable(state)
         if balanced and plasticity.bounds_solve:
             work, error, convolutions = work_by_balance(
-                state, start, self._intermediate, _TOLERANCE
+                state, start, self._intermediate, self.work_tolerance
             )
             if start is not None:
                 error += start.work_error - pinning_error(start)
             error += pinning_error(state)
         else:
-            work, error, convolutions = work_by_force(state, start, self._intermediate, _TOLERANCE)
+            work, error, convolutions = work_by_force(
+                state, start, self._intermediate, self.work_tolerance
+            )
         state = replace(state, work_error=error, convolutions=convolutions + state.convolutions)
         if not plasticity.bounds_solve:
             # There is no formula for the plastic work of a truncated pressure. It is computed as

@@ -25,6 +25,7 @@ from restitution.contact.bodies import Pair
 from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import elastic_pressure
 from restitution.contact.models import Load, Plasticity, set_field
+from restitution.contact.plasticity.bound import ConstantBound
 from restitution.contact.state import Array, State
 from restitution.display import quantity
 from restitution.errors import CaseError
@@ -50,6 +51,7 @@ _DEPTH_FACTOR = 2.0  # the elastic pressure is computed at this multiple of the 
 # rough surfaces, tolerances of 5e-5 and 1e-8 gave values of COR that differ by at most 7.5e-5
 # (tests/contact/test_cavity.py checks 1e-4).
 _RESIDUAL_FACTOR, _LARGEST_RESIDUAL = 5e3, 5e-5
+_PEAK = 1.5  # largest pressure between elastic paraboloids divided by their mean pressure (Hertz)
 _TABOR = 0.2  # representative strain divided by a/R (contact radius a, radius R of the sphere)
 
 # In each step, the pressure bound of a node grows. The error of the plastic work is a fraction of
@@ -190,6 +192,10 @@ class ExpandingCavity(Plasticity):
             increment, increment_error = self.work(before, now)
             work, error, before = work + increment, error + increment_error, now
         return replace(state, plastic_work=work, work_error=error, convolutions=convolutions)
+
+    def of_asperities(self, pair: Pair, elastic_pressure: float) -> ConstantBound:
+        largest = np.asarray(_PEAK * elastic_pressure)
+        return ConstantBound(float(self.bound_at(pair, largest)))
 
     def difference(self, contact: Contact, restitution: float) -> float:
         steepness = contact.pair.contact_modulus * contact.slope / self.yield_strength

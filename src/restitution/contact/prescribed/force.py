@@ -56,7 +56,11 @@ def solve_at_force(contact: Contact, force: float, *, start: State | None = None
     interface = interface_of(contact)
     hertz = float(Hertz(contact.pair.radius, contact.pair.contact_modulus).indentation(force))
     low, high = 0.0, max(hertz, start.indentation if start is not None else 0.0)
-    path = interface.enclose(contact, lambda state: state.force >= force, start)
+
+    def ahead(state: State, stiffness: float) -> float:
+        return (force - state.force) / stiffness if stiffness > 0 else math.inf
+
+    path = interface.enclose(contact, lambda state: state.force >= force, ahead, start)
     if path is not None:
         start, (low, high) = path[0], (state.indentation for state in path)
     state = start

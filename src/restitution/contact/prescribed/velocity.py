@@ -115,9 +115,15 @@ class _Search:
         def reached(state: State) -> bool:
             return state.loading_work >= self._work and state.force > 0
 
+        def ahead(state: State, stiffness: float) -> float:
+            left = max(self._work - state.loading_work, 0.0)
+            if stiffness <= 0:
+                return left / state.force
+            return (math.sqrt(state.force**2 + 2 * stiffness * left) - state.force) / stiffness
+
         contact = self._contact
-        if path := self._interface.enclose(contact, reached, self._start):
-            self.states[path[0].indentation] = path[0]
+        if path := self._interface.enclose(contact, reached, ahead, self._start):
+            self.states.update((state.indentation, state) for state in path)
             return path[1].indentation
         if self._start is not None and (depth := self._step(self._start)) is not None:
             return depth

@@ -52,7 +52,7 @@ _ENDS = (
     "the overlap is back to zero. The force is tensile shortly before, due to damping; do not add "
     "limit_damping, which cuts off the tension and raises e (from 0.8 to 0.808)."
 )
-_TANGENTIAL = (
+TANGENTIAL = (
     f"These pairs have {STIFFNESS_SHARE} times the tangential stiffness of a contact that sticks, "
     "because the edge of a contact slides first. With this factor, the tangential restitution of "
     "elastic spheres is within 0.03 of the theory (docs/oblique.md). For the full stiffness, "
@@ -78,8 +78,8 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
     files = {
         FRAGMENT: export.render(
             FRAGMENT,
-            friction_note=export.friction_note("#", _TANGENTIAL),
-            tangential=_tangential,
+            friction_note=export.friction_note("#", TANGENTIAL),
+            tangential=tangential,
             spheres=spheres,
             walls=[pair for pair in pairs if pair.wall],
             mdr=mdr_offers(pairs),
@@ -92,28 +92,39 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
             spring=_linear_spring(spheres[0]) if len(spheres) == 1 else None,
         ),
         SCRIPT: export.matching_script("lmp -in my.in", FRAGMENT, "matched.lmp"),
-        COLLISION: export.render(COLLISION, size=table.largest_radius, steps=STEPS),
+        COLLISION: export.render(
+            COLLISION, size=table.largest_radius, steps=STEPS, fragment=FRAGMENT, far=0, turns=1000
+        ),
     }
+    return files | packing(export, FRAGMENT) | export.notes()
+
+
+def packing(export: Export, fragment: str) -> dict[str, str]:
+    """The packing with the pairs of the file `fragment`, if there is one; its name and text."""
+    table, pairs, velocity = export.table, export.pairs, export.velocity
     floor = _floor(table)
-    if floor is not None and not table.walls_only:
-        size = table.largest_radius
-        edge = 24 * size
-        height = _GRAINS * 4.2 * size**3 / (_FILLED * edge**2)
-        step = min(pair.contact_time for pair in pairs) / _PACKING_STEPS
-        files[PACKING] = export.render(
-            PACKING,
-            counts=_counts(table),
-            floor=floor,
-            size=size,
-            edge=edge,
-            height=height,
-            step=step,
-            count=1000 * math.ceil(_FALLS * height / (velocity * step) / 1000),
-        )
-    return files | export.notes()
+    if floor is None or table.walls_only:
+        return {}
+    size = table.largest_radius
+    edge = 24 * size
+    height = _GRAINS * 4.2 * size**3 / (_FILLED * edge**2)
+    step = min(pair.contact_time for pair in pairs) / _PACKING_STEPS
+    text = export.render(
+        PACKING,
+        fragment=fragment,
+        counts=_counts(table),
+        floor=floor,
+        size=size,
+        edge=edge,
+        height=height,
+        step=step,
+        count=1000 * math.ceil(_FALLS * height / (velocity * step) / 1000),
+    )
+    return {PACKING: text}
 
 
-def _tangential(pair: ExportedPair) -> str:
+def tangential(pair: ExportedPair) -> str:
+    """LAMMPS' tangential model of `pair` with its parameters."""
     if pair.law.friction is None:
         return f"mindlin NULL 1.0 {pair.friction}"
     stiffness = STIFFNESS_SHARE * pair.mindlin_stiffness

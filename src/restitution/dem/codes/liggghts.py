@@ -9,7 +9,8 @@ the end of the contact. The option `limitForce on` would cut off this tension.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from typing import Any
 
 from restitution.dem.export_common import SCRIPT, STEPS, Export, number
 from restitution.dem.pair import FRICTION, ExportedPair
@@ -39,29 +40,45 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
     """The input files for LIGGGHTS; names and texts. Raises `CaseError`, `DomainError`."""
     table.require_all(CODE)
     export = Export(table, velocity, CODE, LOWEST, _ENDS, setting=SETTING)
-    pairs = export.pairs
+    given = {(p.i, p.j): p.restitution for p in export.pairs}
+    files = inputs(export, given, {"cohesion": ""})
+    script = export.matching_script("liggghts -in my.in", FRAGMENT, "matched.liggghts")
+    return files | {SCRIPT: script} | export.notes()
+
+
+def inputs(
+    export: Export, given: Mapping[tuple[int, int], float], values: Mapping[str, Any]
+) -> dict[str, str]:
+    """The pairs, with the coefficients of restitution `given` to LIGGGHTS, and the collision.
+
+    `values` go to both templates; `cohesion` among them is the cohesion model, or empty.
+    """
+    table, pairs = export.table, export.pairs
     unset = table.missing_spheres()
     return {
         FRAGMENT: export.render(
             FRAGMENT,
+            given=given,
+            **values,
             hardness=_hardness(table),
-            restitution=_by_types(
+            restitution=by_types(
                 table, pairs, lambda p: f"${{e_{p.i}_{p.j}}}", "1", "${{e_{}_{}}}"
             ),
-            friction=_by_types(
+            friction=by_types(
                 table, pairs, lambda p: number(p.friction), number(FRICTION), number(FRICTION)
             ),
             friction_note=export.friction_note("#", _TANGENTIAL),
         ),
-        SCRIPT: export.matching_script("liggghts -in my.in", FRAGMENT, "matched.liggghts"),
         COLLISION: export.render(
             COLLISION,
+            **values,
+            fragment=FRAGMENT,
             unset=unset,
             size=table.largest_radius,
             steps=STEPS,
             hardness=_hardness(table),
         ),
-    } | export.notes()
+    }
 
 
 def _hardness(table: PairTable) -> str:
@@ -71,7 +88,7 @@ def _hardness(table: PairTable) -> str:
     return "soft_particles yes" if min(E) < _SOFT else ""
 
 
-def _by_types(
+def by_types(
     table: PairTable,
     pairs: list[ExportedPair],
     entry: Callable[[ExportedPair], str],

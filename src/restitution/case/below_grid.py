@@ -1,0 +1,249 @@
+"""Which waves of the roughness the grid leaves to patches, and these patches."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, Literal, Protocol
+
+import numpy as np
+
+from restitution.case.interface import InterfaceTable, Yielding
+from restitution.case.rulebook import Input, Key
+from restitution.case.schema import GridTable
+from restitution.contact.bodies import Pair
+from restitution.contact.checks.resolution import predicted_radius
+from restitution.display import quantity
+from restitution.errors import CaseError
+from restitution.numerics import memory
+from restitution.numerics.grid import Grid
+from restitution.surfaces import Surface, refine, rms_slope
+from restitution.surfaces.refine import divided
+from restitution.surfaces.split import SplitSurface, cut, long_waves
+
+BelowGrid = Literal["patch", "omit"]
+# Defaults of `split`, in cells of the grid. With adhesion, more waves make a law of longer range.
+CELLS, ADHESIVE_CELLS = 2, 4
+# Edge of a patch divided by the longest wave in it; patches that adhere are solved more slowly.
+_EDGE, _ADHESIVE_EDGE = 8.0, 4.0
+_LEAST_EDGE = 2.0  # the least such ratio, on a scan that is too small
+TILES = 2  # patches along each edge of the window from which they are cut
+_MOST_NODES = 2048  # along the edge of a patch
+_BYTES = 250.0  # per node of a window
+_MOST_REFINED = 512  # nodes along the edge of a patch that is refined for its adhesion
+_REACH = 0.5  # cell divided by sqrt(r z₀) for asperities of radius r (docs/adhesion.md)
+
+BELOW_GRID = Key(
+    'what happens to waves that the grid does not carry ([two scales](two-scales.md)): `"patch"` '
+    'solves them on periodic patches, whose law the contact uses; `"omit"` leaves them out, and '
+    "the total error includes them",
+    default='`"omit"` for scans, `"patch"` for generated waves below two cells',
+    page=Input("Waves below the grid", more=True, empty="left out of scans"),
+)
+SPLIT = Key(
+    "wavelength at which the surface is split: shorter waves go into the patches; at least two "
+    "grid spacings, and below the contact radius",
+    default=f"{CELLS} grid spacings, with adhesion {ADHESIVE_CELLS}",
+)
+
+
+class SplitCase(Protocol):
+    """What of a `Case` decides how its surface is split."""
+
+    @property
+    def roughness(self) -> tuple[Any, ...]:
+        """The tables of the roughness."""
+
+    @property
+    def grid(self) -> GridTable:
+        """The table of the grid."""
+
+    @property
+    def interface(self) -> InterfaceTable:
+        """The table of the interface."""
+
+    @property
+    def periodic(self) -> bool:
+        """Whether the contact is periodic."""
+
+    @property
+    def can_split(self) -> bool:
+        """Whether the models of the case are defined with patches."""
+
+    def pair(self) -> Pair:
+        """The bodies."""
+
+    def yielding(self) -> Yielding:
+        """How they yield."""
+
+    def deepest_indentation(self) -> float:
+        """The deepest indentation (m)."""
+
+
+@dataclass(frozen=True)
+class Splitting:
+    """How a surface is split at `wavelength` (m): patches of `nodes`² cells of `cell` (m)."""
+
+    wavelength: float
+    cell: float
+    nodes: int
+    tiles: int = TILES
+
+    @property
+    def window(self) -> Grid:
+        """The grid that is cut into patches."""
+        n = self.tiles * self.nodes
+        return Grid((n, n), (self.cell, self.cell))
+
+
+def splitting_of(case: SplitCase, folder: Path) -> Splitting | None:
+    """How the surface of `case` is split; None if it is not.
+
+    Raises `CaseError` if the case asks for a split that is impossible.
+    """
+    wanted = _wanted(case, folder)
+    if wanted is None:
+        return None
+    split, cell = wanted
+    radius = _contact_radius(case)
+    if split <= radius:
+        return _sized(case, folder, split, cell)
+    if _choice(case) is None and _given(case) is None:
+        return None
+    raise CaseError(
+        f"roughness.split: {_nm(split)} is above the contact radius of {_nm(radius)} at the "
+        "largest depth, so waves and contact do not separate; set grid.spacing or split to "
+        f'{_nm(radius / CELLS)} or less, or below_grid = "omit"'
+    )
+
+
+def notice_of(case: SplitCase, folder: Path) -> str | None:
+    """One line if waves below the grid are left out, or if none are left to patches."""
+    wanted = _wanted(case, folder)
+    if wanted is None:
+        if _choice(case) != "patch":
+            return None
+        return "roughness.below_grid: no waves are below the grid, so nothing is split"
+    split, radius = wanted[0], _contact_radius(case)
+    if split <= radius:
+        return None
+    return (
+        f"waves below the grid are left out, because patches of waves up to {_nm(split)} would not "
+        f"be small beside the contact radius of {_nm(radius)} at the largest depth; set "
+        f"grid.spacing to {_nm(radius / CELLS)} or less"
+    )
+
+
+def _wanted(case: SplitCase, folder: Path) -> tuple[float, float] | None:
+    """Wavelength of the split and cell of the patches (m), if waves go into patches."""
+    parts, grid = case.roughness, case.grid.grid()
+    choice = _choice(case)
+    if grid is None or not parts or choice == "omit":
+        return None
+    if not case.can_split:
+        if choice is None:
+            return None
+        raise CaseError(
+            'roughness.below_grid: "patch" is not defined with adhesion = "jkr" (or a key that '
+            'needs it), plasticity = "truncated", a periodic grid, skewness or kurtosis; leave '
+            "below_grid out"
+        )
+    fine = divided(grid, case.grid.factor)
+    if choice is None and not any(part.needs_patches(grid) for part in parts):
+        return None
+    # A finer grid carries more waves of a scan, but no more waves of a generated surface.
+    added = any(part.needs_patches(grid) for part in parts)
+    spacing = max(grid.spacing if added else fine.spacing)
+    cells = ADHESIVE_CELLS if case.interface.adhesive_energy else CELLS
+    split = _given(case) or max(cells * max(fine.spacing), 2 * spacing)
+    cell = min(part.patch_cell(grid, folder) for part in parts)
+    if min(part.shortest_wave(grid, folder) for part in parts) > split * (1 - 1e-9):
+        return None
+    if split < 2 * spacing * (1 - 1e-9):
+        raise CaseError(
+            f"roughness.split: {_nm(split)} is below two grid spacings ({_nm(2 * spacing)}), so "
+            "waves in between would be in neither the grid nor the patches; use a larger split or "
+            "a smaller grid.spacing"
+        )
+    return split, cell
+
+
+def _choice(case: SplitCase) -> BelowGrid | None:
+    return next((part.below_grid for part in case.roughness if part.below_grid), None)
+
+
+def _given(case: SplitCase) -> float | None:
+    return next((part.split for part in case.roughness if part.split), None)
+
+
+def _contact_radius(case: SplitCase) -> float:
+    return predicted_radius(case.pair(), case.deepest_indentation(), case.yielding().hardness)
+
+
+def _sized(case: SplitCase, folder: Path, split: float, cell: float) -> Splitting | None:
+    from scipy.fft import next_fast_len
+
+    room = min(part.patch_room(folder) for part in case.roughness)
+    wanted = _ADHESIVE_EDGE if case.interface.adhesive_energy else _EDGE
+    edge = min(wanted * split, room)
+    if edge < _LEAST_EDGE * split:
+        return None
+    nodes = math.floor(edge / cell * (1 + 1e-9))
+    if edge < room:
+        nodes = next_fast_len(math.ceil(edge / cell * (1 - 1e-9)), real=True)
+    tiles = max(1, math.floor(min(TILES, room / (nodes * cell) * (1 + 1e-9))))
+    needed = _BYTES * (tiles * nodes) ** 2
+    if nodes > _MOST_NODES or needed > memory.available():
+        raise CaseError(
+            f"roughness.split: patches of {nodes} x {nodes} nodes ({_nm(cell)} each, for waves "
+            f"below {_nm(split)}) are too large; use a smaller grid.spacing or split, leave out "
+            'short waves (roughness.shortest), or set below_grid = "omit"'
+        )
+    return Splitting(split, cell, nodes, tiles)
+
+
+def split_surface(case: SplitCase, folder: Path, surface: Surface, how: Splitting) -> SplitSurface:
+    """`surface` of `case` without short waves, and the patches that have them."""
+    kin = tuple(part.of_patches() for part in case.roughness)
+    patches = _patches(kin, str(folder), case.grid.grid(), how)
+    if case.interface.adhesive_energy:
+        z0 = case.interface.equilibrium_separation
+        patches = tuple(_resolved(patch, z0) for patch in patches)
+    long = long_waves(surface, how.wavelength)
+    gone = ("pixel_x_m", "pixel_y_m", "shortest_carried_m", "removed_rms_m", "removed_slope")
+    told = {key: value for key, value in surface.provenance.items() if key not in gone}
+    (nx, ny), (cell, _) = patches[0].grid.nodes, patches[0].grid.spacing
+    told |= {
+        "split_m": how.wavelength,
+        "patches": f"{len(patches)} of {nx} x {ny} nodes of {_nm(cell)}",
+        "patch_rms_m": float(np.sqrt(np.mean([patch.height.var() for patch in patches]))),
+        "patch_slope": float(np.sqrt(np.mean([rms_slope(patch) ** 2 for patch in patches]))),
+    }
+    return SplitSurface(long.height, surface.grid, told, patches, how.wavelength)
+
+
+@lru_cache(maxsize=8)
+def _patches(parts: Sequence[Any], folder: str, grid: Grid, how: Splitting) -> tuple[Surface, ...]:
+    heights = [part.short_waves(how.window, how.wavelength, grid, Path(folder)) for part in parts]
+    return cut(np.sum(heights, axis=0), how.window.spacing, how.nodes, how.tiles)
+
+
+@lru_cache(maxsize=32)
+def _resolved(patch: Surface, z0: float) -> Surface:
+    """`patch` on cells that resolve the adhesion of its asperities."""
+    hx, z = patch.grid.spacing[0], patch.height
+    curvature = (np.roll(z, 1, 0) + np.roll(z, -1, 0) - 2 * z) / hx**2
+    radius = 1 / max(float(curvature.std()), 1e-300)
+    factor = 1
+    while hx / factor > _REACH * math.sqrt(radius * z0) and (
+        2 * factor * patch.grid.nodes[0] <= _MOST_REFINED
+    ):
+        factor *= 2
+    return refine(patch, factor)
+
+
+def _nm(length: float) -> str:
+    return quantity(length, "m")

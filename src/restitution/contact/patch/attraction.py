@@ -1,0 +1,214 @@
+"""Load and unload periodic patches that attract each other: their traction against the gap."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from restitution.contact.cohesive.equilibrium import CohesiveState, law_of
+from restitution.contact.cohesive.path import follow, load_cohesive
+from restitution.contact.contact import Contact
+from restitution.contact.equilibrium import RESIDUAL
+from restitution.contact.patch.stored import bodies_in_words, is_kept, kept
+from restitution.contact.state import Array
+from restitution.errors import DomainError
+from restitution.numerics.tabulated import Tabulated
+
+# A patch is loaded up to this fraction of E*, or of the yield pressure if that is smaller, or until
+# this fraction of it is in contact under a pressure of _BEYOND times w/z₀.
+_HIGHEST, _OF_HARDNESS, _CLOSED, _BEYOND = 0.1, 0.97, 0.95, 3.0
+_ACCURACY = 4e-5  # of the steps: finer than for a force, because the table is interpolated
+_CELLS = 4096  # of the table
+_FAR = 25.0  # gap at the end of the table beyond the highest asperity, in units of z₀
+
+
+@dataclass(frozen=True, eq=False)
+class AttractionCurve:
+    """The loading of a patch; arrays against decreasing gap.
+
+    `gap` (m) is the distance of the mean planes before deformation, `pressure` (Pa) the nominal
+    pressure (tension is negative), `work` that of loading (J/m², 0 at infinity), `lost` the work
+    per area that yielding and jumps have dissipated (J/m²), and `jumps` their number.
+    """
+
+    contact: Contact
+    gap: Array
+    pressure: Array
+    work: Array
+    lost: Array
+    jumps: int
+
+    @classmethod
+    def of(cls, contact: Contact) -> AttractionCurve:
+        """Load `contact`, a periodic contact with an attraction of finite range."""
+        columns = dict(kept(contact.surface, _models(contact), lambda: _columns(contact)))
+        return cls(contact, jumps=int(columns.pop("jumps")[0]), **columns)
+
+    @staticmethod
+    def is_known(contact: Contact) -> bool:
+        """Whether `of` need not solve `contact`."""
+        return is_kept(contact.surface, _models(contact))
+
+    def at(self, gap: Array) -> tuple[Array, Array]:
+        """Pressure and dissipated work at each `gap` (m); rigid bodies beyond the first state."""
+        from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
+
+        inside = np.clip(gap, self.gap[-1], self.gap[0])
+        # The energies are more accurate than an integral of the pressures between the states.
+        work = CubicHermiteSpline(self.gap[::-1], self.work[::-1], -self.pressure[::-1])
+        p = -work.derivative()(inside)
+        lost = PchipInterpolator(self.gap[::-1], self.lost[::-1])(inside)
+        far = gap > self.gap[0]
+        p[far] = self.rigid(gap[far])
+        return p, lost
+
+    def rigid(self, gap: Array) -> Array:
+        """Nominal pressure (Pa) of rigid bodies at each `gap` (m)."""
+        law, local = law_of(self.contact), self.contact.gap - self.contact.gap.mean()
+        return np.array([-float(law.traction(local + g).mean()) for g in gap.tolist()])
+
+
+def _models(contact: Contact) -> object:
+    return bodies_in_words(contact.pair), contact.plasticity, contact.adhesion
+
+
+def _columns(contact: Contact) -> dict[str, Array]:
+    area, z0 = math.prod(contact.grid.size), law_of(contact).equilibrium_separation
+    touch = float(contact.gap.mean()) + z0
+    rows, jumps = [], 0
+    for state in _loading(contact):
+        lost = state.plastic_work + state.adhesive_loss
+        work = state.potential_energy + lost
+        rows.append((touch - state.indentation, state.force / area, work / area, lost / area))
+        jumps = state.jumps
+    columns = dict(zip(("gap", "pressure", "work", "lost"), np.array(rows).T, strict=True))
+    return columns | {"jumps": np.array([float(jumps)])}
+
+
+def _loading(contact: Contact) -> Iterator[CohesiveState]:
+    top = _HIGHEST * contact.pair.contact_modulus
+    top = min(top, _OF_HARDNESS * contact.hardness)
+    law = law_of(contact)
+    beyond = _BEYOND * law.work_of_adhesion / law.equilibrium_separation
+    begin = load_cohesive(contact, -np.inf, start=None, residual=RESIDUAL)
+    yield begin
+    try:
+        for state in follow(begin, np.inf, residual=RESIDUAL, accuracy=_ACCURACY):
+            yield state
+            closed = state.relative_area > _CLOSED and state.nominal_pressure > beyond
+            if closed or state.nominal_pressure > top:
+                return
+    except DomainError:  # the largest pressure of elastic bodies
+        return
+
+
+@dataclass(frozen=True, eq=False)
+class AttractionTable:
+    """The mean of several patches at equal gaps, as a function of the gap.
+
+    Attributes:
+        pressure: Nominal pressure (Pa) during loading; tension is negative.
+        lost: Work per area dissipated by yielding and by jumps so far (J/m²).
+    """
+
+    pressure: Tabulated
+    lost: Array
+
+    @classmethod
+    def of(cls, curves: Sequence[AttractionCurve]) -> AttractionTable:
+        """The mean of `curves`, down to the largest of their smallest gaps."""
+        first = max(c.gap[-1] for c in curves)
+        z0 = law_of(curves[0].contact).equilibrium_separation
+        last = max(c.gap[0] for c in curves) + _FAR * z0
+        # Denser where the pressure varies fast; the uniform table interpolates this one.
+        gap = np.linspace(first, last, _CELLS + 1)
+        p, lost = np.mean([c.at(gap) for c in curves], axis=0)
+        return cls(Tabulated(first, (last - first) / _CELLS, p), lost)
+
+    @cached_property
+    def _ends(self) -> tuple[float, float]:
+        """Integral of the pressure up to the end of the table, and beyond."""
+        whole, last, _ = (float(v) for v in self.pressure(np.asarray(self.pressure.last)))
+        return whole, 0.5 * last * self.pressure.last
+
+    def potential(self, gap: Array) -> tuple[Array, Array, Array]:
+        """Energy (J/m²), traction (Pa) and its derivative (Pa/m) at each `gap` (m).
+
+        Beyond the table the traction falls with the third power of the gap.
+        """
+        end = self.pressure.last
+        inside = np.minimum(gap, end)
+        integral, p, slope = self.pressure(inside)
+        whole, rest = self._ends
+        energy = whole - integral + rest
+        if (far := gap > end).any():
+            ratio = end / gap[far]
+            p_end = self.pressure.values[-1]
+            energy[far] = rest * ratio**2
+            p[far] = p_end * ratio**3
+            slope[far] = -3 * p_end * ratio**3 / gap[far]
+        return energy, -p, -slope
+
+    def drawn(self, count: int) -> Array:
+        """`count` gaps (m) that show the attraction, and as much repulsion."""
+        gap, tension = self.largest_tension
+        least = float(self.gap_at(np.asarray(tension)))
+        return np.asarray(np.linspace(least, gap + 4 * (gap - least), count))
+
+    def at(self, gap: Array) -> Array:
+        """Pressure (Pa) at each `gap` (m)."""
+        return -self.potential(gap)[1]
+
+    def lost_at(self, gap: Array) -> Array:
+        """Work per area dissipated by loading to each `gap` (J/m²)."""
+        at = (gap - self.pressure.first) / self.pressure.step
+        return np.asarray(np.interp(at, np.arange(self.lost.size), self.lost))
+
+    def gap_at(self, pressure: Array) -> Array:
+        """Gap (m) at which the pressure (Pa, not negative) has this value."""
+        p = self.pressure
+        rising = slice(int(np.flatnonzero(p.values > 0)[-1]) + 1, None, -1)
+        gap = p.first + p.step * np.arange(p.values.size)
+        inside = np.interp(pressure, p.values[rising], gap[rising])
+        _, most, slope = p(np.asarray(p.first))
+        return np.asarray(inside + np.maximum(np.asarray(pressure) - most, 0.0) / slope)
+
+    @cached_property
+    def _energy(self) -> Tabulated:
+        count = np.arange(self.pressure.values.size, dtype=np.float64)
+        gap = np.asarray(self.pressure.first + self.pressure.step * count, dtype=np.float64)
+        return replace(self.pressure, values=self.potential(gap)[0])
+
+    def energy_between_spheres(self, gap: float, radius: float) -> float:
+        """Energy (J) of spheres with the reduced `radius` (m) and the smallest gap `gap` (m)."""
+        end = self.pressure.last
+        beyond = self._ends[1] * end
+        if gap >= end:
+            integral = beyond * end / gap
+        else:
+            whole, part = (float(self._energy(np.asarray(g))[0]) for g in (end, gap))
+            integral = whole - part + beyond
+        return 2 * math.pi * radius * integral
+
+    @cached_property
+    def equilibrium(self) -> float:
+        """Gap (m) at which the pressure is zero."""
+        p = self.pressure
+        k = int(np.flatnonzero(p.values > 0)[-1])
+        here, there = p.values[k], p.values[k + 1]
+        return float(p.first + p.step * (k + here / (here - there)))
+
+    @cached_property
+    def largest_tension(self) -> tuple[float, float]:
+        """Gap (m) of the largest tension, and this tension (Pa)."""
+        k = int(self.pressure.values.argmin())
+        return float(self.pressure.first + k * self.pressure.step), -float(self.pressure.values[k])
+
+    @cached_property
+    def work(self) -> float:
+        """Work of adhesion (J/m²) of the rough surfaces."""
+        return -float(self.potential(np.array([self.equilibrium]))[0][0])

@@ -1,0 +1,1 @@
+"""Energy that an impact loses besides yielding and adhesion: plates, waves, viscosity."""

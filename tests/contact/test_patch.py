@@ -1,0 +1,193 @@
+"""Waves below the grid: the law of periodic patches, and the contact under this law."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import restitution as rs
+from restitution.contact.cohesive.law import Cohesive
+from restitution.contact.loading import step
+from restitution.contact.patch.attraction import AttractionTable
+from restitution.contact.patch.law import PatchAttraction, PatchRepulsion, flat
+from restitution.contact.patch.repulsion import PatchCurve, RepulsionTable
+from restitution.surfaces.refine import coarsen
+from restitution.surfaces.split import split
+from tolerance import approx
+
+BODY = rs.Body(radius=250e-6, youngs_modulus=231e9, poissons_ratio=0.3, density=7800.0)
+PAIR = rs.Pair(BODY, replace(BODY, radius=math.inf))
+CELL = 0.1e-6
+ROUGH = {"kind": "self-affine", "hurst": 0.8, "rolloff": 6e-6, "shortest": 0.6e-6}
+HARD = rs.ConstantBound(3e9)
+
+
+@pytest.fixture(scope="module")
+def surface():
+    return rs.generate_surface(rs.Grid((256, 256), (CELL, CELL)), rms=30e-9, seed=3, **ROUGH)
+
+
+@pytest.fixture(scope="module")
+def two_scales(surface):
+    """The contact on cells four times as large, with the waves below 1.6 um in patches."""
+    long, patches = split(surface, 1.6e-6, 64, tiles=3)
+    coarse = coarsen(long, 4)
+    law = PatchRepulsion(patches, 1.6e-6)
+    return rs.Contact(PAIR, rs.Surface(coarse.height, coarse.grid), HARD, law)
+
+
+def work_of(path):
+    """Work (J) of the force along a path, by the trapezium rule."""
+    return np.trapezoid([s.force for s in path], [s.indentation for s in path])
+
+
+@pytest.mark.parametrize("plasticity", [HARD, rs.ExpandingCavity(1e9)])
+def test_the_work_of_a_patch_is_stored_or_dissipated(two_scales, plasticity):
+    patch = two_scales.adhesion.patches[0]
+    contact = rs.Contact(flat(PAIR), patch, periodic=True)
+    table = RepulsionTable.of([PatchCurve.of(contact, plasticity)])
+    gap = table.pressure.first + np.linspace(0, 0.9, 7) * (table.touch - table.pressure.first)
+    work, pressure, slope = table.work(gap)
+    assert (np.diff(work) < 0).all()
+    assert (np.diff(pressure) < 0).all()
+    assert (slope < 0).all()
+    ahead = table.work(gap + 1e-13)[0]
+    np.testing.assert_allclose((work - ahead) / 1e-13, pressure, rtol=1e-3)
+    if plasticity is HARD:
+        depth = float(contact.gap.mean()) - gap[2]
+        direct = rs.solve(replace(contact, plasticity=HARD), float(depth))
+        area = np.prod(patch.grid.size)
+        lost = work[2] * table.of_gap(table.lost, gap[2])
+        assert lost == approx(direct.plastic_work / area, rel=0.02)
+        assert work[2] - lost == approx(direct.stored_energy / area, rel=0.02)
+
+
+def test_the_gap_is_the_inverse_of_the_pressure(two_scales):
+    table = two_scales.adhesion.table
+    for pressure in (1e6, 1e8, 2e9, 2.999e9):
+        assert table.work(table.gap_at(pressure))[1] == approx(pressure, rel=1e-3)
+
+
+def test_the_energy_account_of_an_impact_closes(two_scales):
+    depths = 250e-9 * np.linspace(0, 1, 41)[1:] ** 1.5
+    path = list(rs.loading_path(two_scales, depths))
+    deepest = path[-1]
+    assert deepest.loading_work == approx(work_of(path), rel=5e-3)
+    assert 0 < deepest.patch_work <= deepest.plastic_work
+    assert 0 < deepest.patch_energy < deepest.stored_energy
+    back = list(rs.unloading_path(deepest, steps=40))
+    assert -work_of(back) == approx(rs.collide(deepest).unloading_work, rel=5e-3)
+    assert back[-1].force == approx(0, abs=1e-6 * deepest.force)
+    assert back[-6].force > 0
+    assert back[-1].contact_area < 1e-6 * deepest.contact_area
+    assert back[-1].plastic_work == approx(deepest.plastic_work)
+
+
+def test_a_second_loading_returns_to_the_deepest_state(two_scales):
+    deepest = rs.solve(two_scales, 200e-9)
+    back = step(deepest, 170e-9)
+    assert back.force < deepest.force
+    again = step(back, 200e-9)
+    assert again.force == approx(deepest.force, rel=1e-4)
+    assert again.plastic_work == approx(deepest.plastic_work, rel=1e-3)
+    deeper = step(again, 230e-9)
+    assert deeper.force == approx(rs.solve(two_scales, 230e-9).force, rel=2e-3)
+
+
+@pytest.mark.parametrize("plasticity", [HARD, rs.ExpandingCavity(1e9)])
+def test_restitution_is_that_of_cells_that_carry_all_waves(surface, two_scales, plasticity):
+    fine = rs.Contact(PAIR, surface, plasticity)
+    coarse = replace(two_scales, plasticity=plasticity)
+    left_out = replace(coarse, adhesion=None)
+    off = []
+    for velocity in (0.1, 0.3):
+        direct, law, omit = (
+            rs.collide(rs.solve_at_velocity(contact, velocity)).restitution
+            for contact in (fine, coarse, left_out)
+        )
+        assert law == approx(direct, abs=0.02)
+        off.append((abs(law - direct), abs(omit - direct)))
+    own, without = np.sum(off, axis=0)
+    assert own < 0.6 * without
+
+
+def test_elastic_bodies_return_all_energy(two_scales):
+    state = rs.solve(replace(two_scales, plasticity=rs.Elastic()), 150e-9)
+    assert rs.collide(state).restitution == approx(1.0)
+    assert state.patch_work == 0
+    assert not state.contact.adhesive
+
+
+def test_the_law_follows_the_bodies(two_scales):
+    softer = replace(two_scales, plasticity=rs.ConstantBound(1e9))
+    assert softer.adhesion.plasticity == softer.plasticity
+    assert softer.adhesion.table.pressure.values[0] == approx(1e9, rel=0.05)
+    same = replace(two_scales, adhesion=replace(two_scales.adhesion, pair=None))
+    assert same == two_scales
+
+
+FINE = rs.Body(radius=5e-6, youngs_modulus=72e9, poissons_ratio=0.17, density=2200.0)
+FINE_PAIR = rs.Pair(FINE, replace(FINE, radius=math.inf))
+W, Z0 = 0.05, 0.3e-9
+
+
+def asperities(rms, nodes=48):
+    grid = rs.Grid((nodes, nodes), (0.6e-9, 0.6e-9))
+    waves = {"hurst": 0.8, "rolloff": 14e-9, "shortest": 6e-9}
+    return rs.generate_surface(grid, kind="self-affine", rms=rms, seed=4, **waves)
+
+
+def adhesive(rms, nodes, cell):
+    law = PatchAttraction((asperities(rms),), 14e-9, Cohesive(W, Z0))
+    return rs.Contact(FINE_PAIR, rs.smooth(rs.Grid((nodes, nodes), (cell, cell))), adhesion=law)
+
+
+def test_the_law_of_a_flat_patch_is_that_of_half_spaces():
+    contact = rs.Contact(
+        flat(FINE_PAIR), asperities(1e-14, 24), adhesion=Cohesive(W), periodic=True
+    )
+    law = PatchAttraction((contact.surface,), 14e-9, Cohesive(W))
+    table = law.of_contact(rs.Contact(FINE_PAIR, rs.smooth(rs.Grid((8, 8), (1e-9, 1e-9))))).table
+    gap = np.array([0.28e-9, Z0, 0.4e-9, 1e-9, 5e-9, 30e-9])
+    energy, traction, _ = table.potential(gap)
+    exact = Cohesive(W)
+    np.testing.assert_allclose(energy, exact.energy(gap), rtol=0.02, atol=0.04 * W)
+    np.testing.assert_allclose(traction, exact.traction(gap), rtol=0.03, atol=0.05 * W / Z0)
+    assert table.equilibrium == approx(Z0, rel=5e-3)
+    assert table.work == approx(W, rel=0.02)
+
+
+def test_an_attraction_is_the_derivative_of_its_energy():
+    law = adhesive(0.2e-9, 16, 4e-9).adhesion
+    gap = np.linspace(0.2e-9, 20e-9, 200)
+    energy, traction, stiffness = law.potential(gap)
+    d = 1e-14
+    ahead = law.potential(gap + d)
+    np.testing.assert_allclose((ahead[0] - energy) / d, traction, rtol=0.02, atol=1e3)
+    np.testing.assert_allclose((ahead[1] - traction) / d, stiffness, rtol=0.05, atol=1e13)
+    whole = rs.theory.LennardJones  # the energy of spheres is the integral of that per area
+    assert whole is not None
+    g = np.geomspace(1e-9, 1e-6, 4000)
+    integral = 2 * math.pi * 5e-6 * np.trapezoid(law.energy(g), g)
+    assert law.rigid_sphere_energy(1e-9, 5e-6) == approx(integral, rel=5e-3)
+
+
+def test_roughness_weakens_adhesion_and_the_pull_off_is_independent_of_the_cells():
+    forces = []
+    for nodes, cell in ((40, 8e-9), (80, 4e-9)):
+        contact = adhesive(0.2e-9, nodes, cell)
+        collision = rs.collide(rs.solve(contact, 1e-9))
+        forces.append(collision.pull_off_force)
+    smooth = rs.theory.JKR(5e-6, FINE_PAIR.contact_modulus, W).pull_off_force
+    assert 0.2 * smooth < forces[1] < 0.8 * smooth
+    assert forces[0] == approx(forces[1], rel=0.01)
+
+
+def test_patches_are_averaged_at_equal_gaps():
+    contact = rs.Contact(flat(FINE_PAIR), asperities(0.2e-9), adhesion=Cohesive(W), periodic=True)
+    curve = PatchAttraction((contact.surface,), 14e-9, Cohesive(W), flat(FINE_PAIR)).curve(
+        contact.surface
+    )
+    one, two = AttractionTable.of([curve]), AttractionTable.of([curve, curve])
+    np.testing.assert_allclose(one.pressure.values, two.pressure.values, rtol=1e-12)
