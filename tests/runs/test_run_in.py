@@ -2,6 +2,8 @@
 
 import csv
 import io
+import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -97,6 +99,16 @@ def test_a_law_at_a_coverage_has_its_distribution(folder):
     texts = export([worn], "yade", 0.15)
     assert f", {points[1].restitution_std:.6f})" in texts["restitution_yade.py"]
     assert "that earlier impacts have covered" in texts["restitution_yade.txt"]
+
+
+def test_a_law_at_a_coverage_keeps_the_other_losses(folder):
+    law = bare_law(folder)
+    lossy = [replace(point, factors={"waves": 0.9, "plate": 0.8}) for point in law.points]
+    plain, with_losses = (at_coverage(one, 1) for one in (law, replace(law, points=tuple(lossy))))
+    for without, point in zip(plain.points, with_losses.points, strict=True):
+        share = 0.72 / math.prod(without.factors.values())
+        assert point.restitution == approx(share * without.restitution)
+        assert point.deviation == approx(share * without.deviation)
 
 
 def test_laws_refuse_coverages_beyond_the_computed_ones(folder):

@@ -416,7 +416,7 @@ class Case(Table):
         """Whether the models and surfaces of the case are defined with waves below the grid."""
         interface = self.interface
         jkr = interface.adhesion == "jkr" or interface.needs_jkr
-        if self.periodic or (interface.adhesive_energy and jkr):
+        if self.impacts or self.periodic or (interface.adhesive_energy and jkr):
             return False
         normal = all(part.is_normal for part in self.roughness)
         return normal and self.yielding().model.bounds_solve

@@ -103,16 +103,19 @@ def _point(law: Law, point: LawPoint, coverage: float) -> LawPoint:
     after = int(np.searchsorted(C, min(coverage, C[-1])))
     around = known[max(after - 1, 0) : after + 1]
     e = at("restitution")
+    # The other losses of an impact hardly depend on the roughness.
+    share = math.prod(point.factors.values())
     quantiles = np.array([one.quantiles for one in known])
     return replace(
         point,
-        restitution=e,
-        ratio=e * e,
+        restitution=share * e,
+        quasi_static=e if point.factors else None,
+        ratio=(share * e) ** 2,
         error=max(one.error for one in around),
         indentation=at("indentation"),
         force=at("force"),
         pull_off_force=at("pull_off_force"),
         pull_off_error=None,
-        deviation=at("deviation"),
-        quantiles=cast(Quantiles, tuple(float(np.interp(coverage, C, of)) for of in quantiles.T)),
+        deviation=share * at("deviation"),
+        quantiles=cast(Quantiles, tuple(share * float(np.interp(coverage, C, of)) for of in quantiles.T)),
     )
