@@ -105,7 +105,8 @@ def _point(law: Law, point: LawPoint, coverage: float) -> LawPoint:
     e = at("restitution")
     # The other losses of an impact hardly depend on the roughness.
     share = math.prod(point.factors.values())
-    quantiles = np.array([one.quantiles for one in known])
+    table = share * np.array([one.quantiles for one in known]).T
+    quantiles = tuple(float(np.interp(coverage, C, values)) for values in table)
     return replace(
         point,
         restitution=share * e,
@@ -117,5 +118,5 @@ def _point(law: Law, point: LawPoint, coverage: float) -> LawPoint:
         pull_off_force=at("pull_off_force"),
         pull_off_error=None,
         deviation=share * at("deviation"),
-        quantiles=cast(Quantiles, tuple(share * float(np.interp(coverage, C, of)) for of in quantiles.T)),
+        quantiles=cast(Quantiles, quantiles),
     )
