@@ -19,6 +19,7 @@ ROOMS = (
     "contact",
     "collision",
     "curve",
+    "repeated",
     "losses",
     "case",
     "results",

@@ -38,6 +38,7 @@ from .impacts.oblique import ObliqueCollision as ObliqueCollision
 from .numerics.convolution.cache import operator_cache as operator_cache
 from .numerics.convolution.device import on_device as on_device
 from .numerics.grid import Grid as Grid
+from .repeated.run_in import RunIn as RunIn
 from .surfaces import Surface as Surface
 from .surfaces import composite as composite
 from .surfaces import crop as crop

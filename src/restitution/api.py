@@ -239,6 +239,7 @@ def export(
     to: str,
     out: Folder,
     velocity: str | float | None = None,
+    coverage: float | None = None,
 ) -> list[Path]:
     """Write laws as the input of a DEM code, as `restitution export` does.
 
@@ -251,6 +252,8 @@ def export(
         out: Folder for the files; existing files are never overwritten.
         velocity: Impact velocity, such as "1 m/s", or a number (m/s). It is optional for
             "c", "python" and "csv".
+        coverage: How many times earlier impacts have covered the surfaces (dimensionless); None for
+            the first impact. The cases need the table [impacts].
 
     Returns:
         The files that were written.
@@ -263,11 +266,15 @@ def export(
     """
     from restitution.dem.export import CODES, write_export
     from restitution.dem.export import export as export_texts
+    from restitution.dem.fits import with_fits
+    from restitution.laws.coverage import at_coverage
     from restitution.laws.law import Law, velocity_of
 
     if to not in CODES:
         raise CaseError(f"to={not_one_of(to, CODES)}")
     given = [laws] if isinstance(laws, (str, os.PathLike, Law)) else laws
     read = [law for item in given for law in _laws_in(item)]
+    if coverage is not None:
+        read = [with_fits(at_coverage(law, coverage)) for law in read]
     speed = velocity_of(velocity) if isinstance(velocity, str) else velocity
     return write_export(export_texts(read, to, speed), Path(out))

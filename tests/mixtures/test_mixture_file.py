@@ -128,7 +128,7 @@ def test_a_pair_may_have_an_interface_of_its_own(mixture_text):
         ),
         ('material = "steel"', 'material = "steel"\nmass_fractions = [1]', "a wall has no sizes"),
         ("[walls.drum]", "[walls.alu]", "walls.alu: is also the name of a material"),
-        ("[impact]", "[impacts]", "impacts: unknown key"),
+        ("[impact]", "[impacts]", "impacts.from: unknown key"),
         ('from = "0.1 m/s"', 'from = "2 m/s"', "`from` must be smaller than `to`"),
         ('rms = "0.05 um"', 'rms = "0.05"', "materials.alu.roughness.rms"),
         ("seed = 1", 'seed = "one"', "materials.alu.roughness.seed"),
@@ -200,3 +200,16 @@ def test_friction_belongs_to_pairs_and_angles_are_refused(mixture_text):
     for key, value in (("angle", "30 deg"), ("spin", "5 rpm")):
         with pytest.raises(CaseError, match=f"impact.{key}: a mixture has laws of head-on impacts"):
             parse_mixture(text.replace("[impact]", f'[impact]\n{key} = "{value}"'))
+
+
+def test_impacts_are_those_of_every_pair_and_give_laws_at_their_coverage(mixture_text):
+    text = mixture_text().replace("[grid]", "[impacts]\ncoverage = [1, 3]\nplaces = 8\n\n[grid]")
+    mixture = parse_mixture(text)
+    assert mixture.coverage == 3
+    for family in families(mixture):
+        case = parse_case(family.case(family.radii[0]))
+        assert case.impacts.coverage == [1, 3]
+        assert case.grid.refine == 1
+    counted = text.replace("coverage = [1, 3]", "count = 100")
+    with pytest.raises(CaseError, match=r"impacts\.count: a mixture needs coverage"):
+        parse_mixture(counted)

@@ -148,8 +148,8 @@ def _wanted(case: SplitCase, folder: Path) -> tuple[float, float] | None:
             return None
         raise CaseError(
             'roughness.below_grid: "patch" is not defined with adhesion = "jkr" (or a key that '
-            'needs it), plasticity = "truncated", a periodic grid, skewness or kurtosis; leave '
-            "below_grid out"
+            'needs it), plasticity = "truncated", [impacts], a periodic grid, skewness or '
+            "kurtosis; leave below_grid out"
         )
     fine = divided(grid, case.grid.factor)
     if choice is None and not any(part.needs_patches(grid) for part in parts):

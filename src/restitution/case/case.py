@@ -11,6 +11,7 @@ from pydantic import BeforeValidator, model_validator
 from restitution.case import needs
 from restitution.case.below_grid import Splitting, split_surface, splitting_of
 from restitution.case.bodies import BodyTable
+from restitution.case.impacts import MOST_IMPACTS, ImpactsTable
 from restitution.case.interface import InterfaceTable, Yielding
 from restitution.case.materials import Property, with_library_adhesion, work_of_adhesion
 from restitution.case.models import Adhesion, adhesion_of
@@ -23,17 +24,21 @@ from restitution.contact.cohesive.law import Cohesive
 from restitution.contact.contact import Contact, smooth
 from restitution.contact.models import Adhesion as AdhesionModel
 from restitution.contact.patch.law import PatchAttraction, PatchRepulsion
+from restitution.display import quantity
 from restitution.errors import CaseError, SurfaceError
 from restitution.losses.half_space import HalfSpace
 from restitution.losses.losses import Losses
 from restitution.losses.plate import Plate
 from restitution.losses.viscosity import Friction, Viscosity
 from restitution.numerics.grid import Grid
+from restitution.repeated.run_in import nominal_area
 from restitution.surfaces import Surface, composite
 from restitution.surfaces.refine import divided
 from restitution.surfaces.split import SplitSurface
 from restitution.theory import ThorntonNing
 
+# Smallest width of a grid with [impacts], in diameters of the contact of smooth bodies.
+_WIDEST = 1.6
 # Tables that can prescribe the depths, which are states of loading. Each table prescribes one
 # quantity: indentation, load, impact velocity or nominal pressure.
 DEPTHS = ("indentation", "load", "impact", "pressure")
@@ -73,6 +78,7 @@ class Case(Table):
     )
     pressure: Series[Pressure] | None = None
     unloading: UnloadingTable = UnloadingTable()
+    impacts: ImpactsTable | None = None
 
     @model_validator(mode="before")
     @classmethod
@@ -117,7 +123,73 @@ class Case(Table):
             raise ValueError(
                 "roughness.realisations: differs between the tables; give the same number in all"
             )
+        if self.impacts is not None:
+            self._check_impacts(self.impacts)
         return self
+
+    def _check_impacts(self, impacts: ImpactsTable) -> None:
+        if self.impact is None:
+            raise ValueError(
+                "[impacts]: needs [impact], whose velocities are those at which COR is measured"
+            )
+        if not isinstance(self.grid.refine, int):
+            raise ValueError("grid.refine: must be one number with [impacts]")
+        if self.realisations > 1:
+            raise ValueError(
+                "roughness.realisations: must be 1 with [impacts], which measures COR at many "
+                "places; remove this key"
+            )
+        for part in self.roughness:
+            if isinstance(part, GeneratedRoughness) and not part.periodic:
+                raise ValueError(
+                    "roughness.periodic: must be true with [impacts], because the surface repeats "
+                    "beyond its edges; remove this key"
+                )
+        if self.interface.plasticity == "truncated":
+            raise ValueError(
+                'interface.plasticity: "truncated" defines a single impact; remove this key to use '
+                "[impacts]"
+            )
+        if impacts.place == "track" and all(body.radius for body in self.bodies().values()):
+            raise ValueError(
+                'impacts.place: "track" needs a wall; give second.radius = "flat", or place = '
+                '"random"'
+            )
+        if (grid := self.grid.grid()) is not None:
+            self.impact_counts(grid)
+
+    def impact_counts(self, grid: Grid) -> dict[float, list[int]]:
+        """Number of impacts on `grid` up to each coverage, by velocity (m/s) of [impact].
+
+        Raises `CaseError` if a coverage is less than one contact, or needs too many impacts, or if
+        a contact is as large as the grid.
+        """
+        impacts, impact = self.impacts, self.impact
+        assert impacts is not None
+        assert impact is not None
+        counts, whole = {}, math.prod(grid.size)
+        for V in impact.series():
+            run_in = impacts.velocity or [V]
+            areas = [nominal_area(self.pair(), self.yielding().hardness, v) for v in (V, *run_in)]
+            _require_wide(grid, max(areas), max(V, *run_in))
+            if impacts.count is not None:
+                counts[V] = [impacts.count]
+                continue
+            one = sum(areas[1:]) / len(run_in) / whole
+            counts[V] = [round(c / one) for c in sorted(set(impacts.coverage or []))]
+            if counts[V][0] < 1:
+                raise CaseError(
+                    f"impacts.coverage: {min(impacts.coverage or []):g} is less than one contact "
+                    f"at {V:.4g} m/s, which covers {one:.3g} of the surface; give at least "
+                    f"{1.01 * one:.2g}, or a larger grid"
+                )
+            if counts[V][-1] > MOST_IMPACTS:
+                raise CaseError(
+                    f"impacts.coverage: {max(impacts.coverage or []):g} takes {counts[V][-1]} "
+                    f"impacts at {V:.4g} m/s, more than {MOST_IMPACTS}; give less coverage, a "
+                    "smaller grid, or higher velocities"
+                )
+        return counts
 
     def _check_period(self) -> None:
         for name, body in self.bodies().items():
@@ -344,7 +416,7 @@ class Case(Table):
         """Whether the models and surfaces of the case are defined with waves below the grid."""
         interface = self.interface
         jkr = interface.adhesion == "jkr" or interface.needs_jkr
-        if self.periodic or (interface.adhesive_energy and jkr):
+        if self.impacts or self.periodic or (interface.adhesive_energy and jkr):
             return False
         normal = all(part.is_normal for part in self.roughness)
         return normal and self.yielding().model.bounds_solve
@@ -458,3 +530,16 @@ class Case(Table):
         """The prescribed indentations (m), loads (N), velocities (m/s) or pressures (Pa)."""
         tables = (self.indentation, self.load, self.impact, self.pressure)
         return next(table.series() for table in tables if table is not None)  # only one is given
+
+
+def _require_wide(grid: Grid, area: float, velocity: float) -> None:
+    """Raise `CaseError` if a contact of this area (m²) covers most of `grid`."""
+    wide = _WIDEST * 2 * math.sqrt(area / math.pi)
+    if wide <= min(grid.size):
+        return
+    nodes = math.ceil(wide / min(grid.spacing))
+    raise CaseError(
+        f"grid.nodes: the grid of {quantity(min(grid.size), 'm')} is too small for [impacts] at "
+        f"{velocity:.4g} m/s, where the contact is {quantity(wide / _WIDEST, 'm')} wide; give at "
+        f"least {nodes} nodes, or lower velocities"
+    )

@@ -19,7 +19,8 @@ from restitution.cli.parameters import ExportFormat, FigureFormat
 from restitution.dem.export import export as exported
 from restitution.dem.export import limit, unset, write_export
 from restitution.dem.fits import fit_law as law_of
-from restitution.dem.fits import too_few_points
+from restitution.dem.fits import too_few_points, with_fits
+from restitution.laws.coverage import at_coverage, coverage_of
 from restitution.laws.law import LOSS, FittedLaw, Law, velocity_of
 from restitution.laws.law_files import read_laws, write_law
 from restitution.plots.law import law_figure
@@ -85,8 +86,12 @@ def _table(laws: "tuple[FittedLaw, ...]") -> Table:
     return table
 
 
-def export(laws: list[Path], to: ExportFormat, out: Path, velocity: str | None) -> None:
+def export(
+    laws: list[Path], to: ExportFormat, out: Path, velocity: str | None, coverage: str | None
+) -> None:
     read = read_laws(laws)
+    if coverage is not None:
+        read = [with_fits(at_coverage(law, coverage_of(coverage))) for law in read]
     at = None if velocity is None else velocity_of(velocity)
     texts = exported(read, to.value, at)
     with warn_once() as warn:

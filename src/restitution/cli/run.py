@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
@@ -36,6 +36,7 @@ from restitution.curve.periodic import PeriodicPoint
 from restitution.curve.point import MeanPoint, Point
 from restitution.display import quantity
 from restitution.numerics.convolution.device import on_device
+from restitution.repeated.points import RunInPoint
 from restitution.results.locking import locked
 from restitution.results.periodic import PeriodicResults
 from restitution.results.reader import RunResults
@@ -47,6 +48,7 @@ from restitution.runs.convergence import run_convergence
 from restitution.runs.ensemble import run_realisations
 from restitution.runs.error_budget import steps
 from restitution.runs.losses import loss_information
+from restitution.runs.run_in import sequences
 
 # If the total error of COR is at least this value at any depth, the name of the largest part of the
 # error and the remedy are printed.
@@ -128,7 +130,7 @@ def _compute(
 ) -> dict[str, Any]:
     depths = len(read.depths())
     with naming(case), warn_once() as warn, progress_bar() as bar:
-        more = 0 if read.periodic else steps(read)
+        more = 0 if read.periodic else steps(read) + sequences(read)
         task = bar.add_task("reading the surface", total=depths * curves + more)
         summary = start(
             read,
@@ -142,6 +144,8 @@ def _compute(
     print_numbers(
         _curve(points, wanted=read.total_error) if points else _periodic_curve(folder.periodic)
     )
+    if folder.run_in:
+        print_numbers(_run_in(folder.run_in))
     many = f" of {curves} curves" if curves > 1 else ""
     residual = summary["diagnostics"]["largest_residual"]
     answers.print(
@@ -153,6 +157,7 @@ def _compute(
         in_words(summary.get("sticking", {}), points),
         _elastic_error(points),
         _advice(read, points, summary),
+        *_steady(summary),
     ):
         if words:
             say(words)
@@ -208,11 +213,21 @@ def _draw(out: Path, figures: FigureFormat) -> list[Path]:
     # Importing matplotlib takes a second, which a case that is refused need not wait.
     from restitution.plots.periodic import periodic_figures
     from restitution.plots.run import run_figures
+    from restitution.plots.run_in import impacts_figure, run_in_figure
     from restitution.plots.static import write_figures
 
     if is_periodic(out):
         return write_figures(out, periodic_figures(PeriodicResults(out).dataset), figures.value)
-    return write_figures(out, run_figures(RunResults(out).dataset), figures.value)
+    run = RunResults(out)
+    drawn = write_figures(out, run_figures(run.dataset), figures.value)
+    if run.run_in:
+        title = run.summary["title"]
+        named = (
+            ("run-in-velocity", run_in_figure(run.run_in, title)),
+            ("run-in-impacts", impacts_figure(run.impacts, title)),
+        )
+        drawn += write_figures(out, named, figures.value)
+    return drawn
 
 
 def _with_error(cor: float, error: float, wanted: bool) -> str:
@@ -258,6 +273,39 @@ def _number(cor: float) -> str:
 def _force(point: Point) -> str:
     force, error = point.pull_off_force, point.pull_off_error
     return f"{quantity(force, 'N')} ± {error / force:.0%}" if force > 0 else "unknown"
+
+
+def _run_in(points: Sequence[RunInPoint]) -> Table:
+    table = table_of_numbers("V (m/s)", "coverage", "impacts", "COR", "places ±", "5 %", "95 %")
+    for point in points:
+        table.add_row(
+            f"{point.velocity:.4g}",
+            f"{point.coverage:.3g}",
+            f"{point.impacts:.0f}",
+            _with_error(point.restitution, point.total_error, wanted=False),
+            f"{point.restitution_std:.3f}",
+            f"{point.restitution_5:.3f}",
+            f"{point.restitution_95:.3f}",
+        )
+    return table
+
+
+def _steady(summary: dict[str, Any]) -> Iterator[str]:
+    for sequence in summary.get("run_in", {}).get("sequences", ()):
+        state = sequence["steady_state"]
+        if state is None:
+            continue
+        where = f"after {sequence['impacts']} impacts (coverage {sequence['coverage']:.3g})"
+        if state["steady"]:
+            yield (
+                f"COR is steady {where}, {state['restitution']:.3f} ± {state['error']:.2g} in the "
+                f"last half of the impacts at {state['velocity']:.3g} m/s"
+            )
+        else:
+            yield (
+                f"COR may still change {where} at {state['velocity']:.3g} m/s: by "
+                f"{state['trend']:+.2g} ± {state['trend_error']:.2g} per coverage"
+            )
 
 
 def _periodic_curve(points: Sequence[PeriodicPoint]) -> Table:

@@ -362,6 +362,15 @@ def export(
         str | None,
         option("VELOCITY", 'Impact velocity, such as "1 m/s"; not needed for c, python and csv.'),
     ] = None,
+    coverage: Annotated[
+        str | None,
+        option(
+            "COVERAGE",
+            "How many times earlier impacts have covered the surfaces, such as 3, for laws of runs "
+            "with many impacts.",
+            show_default="the first impact",
+        ),
+    ] = None,
 ) -> None:
     """Write the input of a DEM code to OUT, with the COR of every pair at VELOCITY.
 

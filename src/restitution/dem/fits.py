@@ -57,7 +57,10 @@ _AT_FORCE_ZERO = "separation, where the force is back to zero"
 
 def fit_law(out: Path | RunResults, begin: Begin | None = None) -> Law:
     """The law of the results in the folder `out`, with its fits. Raises as `bare_law`."""
-    law = bare_law(out)
+    return with_fits(bare_law(out), begin)
+
+
+def with_fits(law: Law, begin: Begin | None = None) -> Law:
     return replace(law, fit=compact_fit(law), laws=fitted_laws(law, begin))
 
 

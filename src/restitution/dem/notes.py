@@ -7,6 +7,8 @@ import textwrap
 from collections.abc import Sequence
 from contextlib import suppress
 
+import numpy as np
+
 from restitution.dem.pair import ExportedPair, pull_off_force
 from restitution.display import without_numbers
 from restitution.errors import DomainError, one_line
@@ -94,6 +96,7 @@ def _about(pair: ExportedPair, code: str, *, pulls: bool) -> list[str]:
         *([f"  title: {title}"] if title else []),
         f"  e = {pair.restitution:.6g} +/- {law.at(velocity).error:.2g} at {velocity:.6g} m/s"
         + _elsewhere(law, velocity),
+        *_covered(law, velocity),
         *_losses(law, velocity),
         f"  R* = {law.radius:.6g} m, E* = {law.contact_modulus:.6g} Pa, m* = {law.mass:.6g} kg",
         f"  yield pressure p_y: {p_y}; convention: {law.conventions.yield_pressure}",
@@ -113,6 +116,18 @@ def _elsewhere(law: Law, velocity: float) -> str:
         with suppress(DomainError):
             said.append(f"{law.at(V).restitution:.4g} at {V:.6g} m/s")
     return f" (but {', '.join(said)})" if said else ""
+
+
+def _covered(law: Law, velocity: float) -> list[str]:
+    if law.coverage is None:
+        return []
+    deviation = np.interp(
+        math.log(velocity), np.log(law.column("velocity")), law.column("deviation")
+    )
+    return [
+        f"  e is that of surfaces that earlier impacts have covered {law.coverage:g} times; its "
+        f"standard deviation over places is {deviation:.2g}"
+    ]
 
 
 def _losses(law: Law, velocity: float) -> list[str]:

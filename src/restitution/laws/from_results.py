@@ -12,6 +12,7 @@ from pydantic import ValidationError
 from restitution.case.bodies import BodyTable
 from restitution.curve.point import Point as Impact
 from restitution.errors import CaseError, OutputError, first_problem, one_line
+from restitution.laws.coverage import covered_points
 from restitution.laws.law import Conventions, Law, LawPoint
 from restitution.laws.law_files import LAW_FILE
 from restitution.laws.particle import Particle
@@ -106,6 +107,7 @@ def _law(out: Path, run: RunResults) -> Law:
         smooth_sticking_velocity=derived.get("sticking_velocity_m_per_s"),
         sticks_below=None,
         points=tuple(points),
+        run_in=covered_points(run.run_in),
         warnings=tuple(warnings),
         case=run.case_text,
         versions=summary["versions"],

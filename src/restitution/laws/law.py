@@ -18,6 +18,9 @@ from restitution.errors import CaseError, DomainError
 from restitution.laws.particle import STRICT, NotNegative, Particle, Positive, Share
 
 Array = NDArray[np.float64]
+Quantiles = tuple[Share, Share, Share, Share, Share]
+QUANTILES = (5, 25, 50, 75, 95)
+"""The quantiles (%) of a distribution of COR."""
 
 LOSS = 1e-3
 """A law is not fitted if e, or 1 − e, is below this value at every velocity."""
@@ -34,6 +37,8 @@ class LawPoint:
     `error` is that of `restitution`; `indentation` and `force` are the maxima of the impact, and
     `separation` the indentation at which the bodies separate. `restitution` is `quasi_static` times
     `factors`, those of the losses (`losses.NAMES`); laws of older versions have no factors.
+    `deviation` and `quantiles` (5, 25, 50, 75 and 95 %) are those of COR over places of the
+    surfaces; None if it was not measured at several.
     """
 
     velocity: Positive
@@ -49,12 +54,32 @@ class LawPoint:
     resolved: bool
     quasi_static: Share | None = None
     factors: dict[str, Share] = field(default_factory=dict)
+    deviation: NotNegative | None = None
+    quantiles: Quantiles | None = None
 
     @model_validator(mode="after")
     def _one_number(self) -> Self:
         if abs(self.restitution - root(self.ratio)) > 1e-6:
             raise ValueError("restitution: is not the square root of ratio")
         return self
+
+
+@checked_dataclass(frozen=True, kw_only=True, config=STRICT)
+class CoveredPoint:
+    """COR at one velocity after impacts that have covered the surfaces `coverage` times.
+
+    The fields are those of `LawPoint`, as means over places of the surfaces.
+    """
+
+    velocity: Positive
+    coverage: NotNegative
+    restitution: Share
+    error: NotNegative
+    deviation: NotNegative
+    quantiles: Quantiles
+    indentation: float
+    force: float
+    pull_off_force: float
 
 
 @checked_dataclass(frozen=True, kw_only=True, config=STRICT)
@@ -143,7 +168,8 @@ class Law:
     `radius`, `contact_modulus` and `mass` are R*, E* and m*. `friction` is the coefficient of the
     case; e does not depend on it. Smooth bodies yield above `yield_velocity`, and smooth elastic
     bodies stick up to `smooth_sticking_velocity`. This pair rebounds above `sticks_below`; None if
-    it sticks at no velocity, or at every computed one.
+    it sticks at no velocity, or at every computed one. `points` are those of the first impact, or
+    at a `coverage` of the surfaces by earlier impacts, for which `run_in` has the data.
     """
 
     title: str
@@ -162,6 +188,8 @@ class Law:
     sticks_below: float | None
     sticks_below_error: float | None = None
     points: Annotated[tuple[LawPoint, ...], Field(min_length=1)]
+    coverage: NotNegative | None = None
+    run_in: tuple[CoveredPoint, ...] = ()
     fit: CompactFit | None = None
     laws: tuple[FittedLaw, ...] = ()
     warnings: tuple[str, ...] = ()

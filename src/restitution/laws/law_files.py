@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from restitution.errors import CaseError, OutputError, first_problem
-from restitution.laws.law import STORED_LAW, Law
+from restitution.laws.law import QUANTILES, STORED_LAW, Law, LawPoint
 from restitution.losses.losses import NAMES
 from restitution.results.checksums import check_file
 from restitution.results.interruption import hold_signals
@@ -94,6 +94,7 @@ def law_rows(law: Law) -> list[dict[str, float | str]]:
             "resolved": point.resolved,
             "quasi_static_restitution": _or_nan(point.quasi_static),
             **{f"{name}_factor": point.factors.get(name, math.nan) for name in NAMES},
+            **_distribution(point),
             "compact_fit": fitted,
             "compact_fit_error": abs(fitted - point.restitution),
             "loading_work_J": point.loading_work,
@@ -114,6 +115,15 @@ def law_rows(law: Law) -> list[dict[str, float | str]]:
         }
         for point, fitted in zip(law.points, fit.tolist(), strict=True)
     ]
+
+
+def _distribution(point: LawPoint) -> dict[str, float]:
+    """The distribution of COR over places; no columns if it is unknown."""
+    if point.deviation is None or point.quantiles is None:
+        return {}
+    return {"restitution_std": point.deviation} | {
+        f"restitution_{q}": value for q, value in zip(QUANTILES, point.quantiles, strict=True)
+    }
 
 
 def _laws(law: Law) -> list[dict[str, float | str]]:

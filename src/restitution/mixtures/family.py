@@ -88,9 +88,10 @@ class Family:
     def _grid(self) -> dict[str, Any]:
         """The same for all reduced radii, and so is the surface."""
         if self.mixture.grid is not None:
-            return {"refine": "auto", **self.mixture.grid}
+            return {"refine": self._refine, **self.mixture.grid}
         probe = {"nodes": 64, "spacing": "1 um"}
-        cases = [self._parsed(radius, probe) for radius in (self.radii[0], self.radii[-1])]
+        ends = self.radii[0], self.radii[-1]
+        cases = [self._parsed(radius, probe, sized=False) for radius in ends]
         width = _WIDTH * max(_half_width(case) for case in cases)
         spacing = min(width / _NODES, *(_spacing(part) for part in cases[0].roughness), math.inf)
         nodes = 2 * math.ceil(0.5 * width / spacing)
@@ -101,15 +102,22 @@ class Family:
                 f"grid width {quantity(width, 'm')} for the contact); give the table [grid], lower "
                 "velocities, or smaller radii"
             )
-        return {"nodes": nodes, "spacing": f"{spacing!r} m", "refine": "auto"}
+        return {"nodes": nodes, "spacing": f"{spacing!r} m", "refine": self._refine}
 
-    def _parsed(self, radius: float, grid: dict[str, Any]) -> Case:
+    @property
+    def _refine(self) -> int | str:
+        return "auto" if self.mixture.impacts is None else 1
+
+    def _parsed(self, radius: float, grid: dict[str, Any], *, sized: bool = True) -> Case:
+        """The case on `grid`; without `sized`, the grid need not hold the contacts of [impacts]."""
         try:
-            return parse_case(tomli_w.dumps(self._content(radius, grid)))
+            return parse_case(tomli_w.dumps(self._content(radius, grid, sized=sized)))
         except RestitutionError as error:
             raise CaseError(f"in the pair {self.name}: {error}") from None
 
-    def _content(self, radius: float, grid: dict[str, Any]) -> dict[str, Any]:
+    def _content(
+        self, radius: float, grid: dict[str, Any], *, sized: bool = True
+    ) -> dict[str, Any]:
         flat = self.second.wall
         own = f"{radius if flat else 2 * radius!r} m"
         rough = [*self.first.roughness]
@@ -124,6 +132,7 @@ class Family:
             "grid": grid,
             "impact": {"velocity": [f"{V!r} m/s" for V in self._velocities(radius)]},
             "unloading": {"curves": 1},
+            **({"impacts": self.mixture.impacts} if self.mixture.impacts and sized else {}),
         }
 
     def _velocities(self, radius: float) -> list[float]:

@@ -15,6 +15,7 @@ import numpy as np
 
 from restitution.display import some_of, without_numbers
 from restitution.errors import OutputError
+from restitution.laws.coverage import at_coverage
 from restitution.laws.from_results import bare_law
 from restitution.laws.law import Law
 from restitution.laws.law_files import LAWS, MIXTURE_FILE, write_law
@@ -92,7 +93,10 @@ def _computed(
 ) -> FamilyLaws:
     radii = sorted(radius for name, radius in cases if name == family.name)
     folders = [out.folder_of(cases[family.name, radius]) for radius in radii]
-    return FamilyLaws(family, tuple(map(bare_law, folders)))
+    laws, coverage = list(map(bare_law, folders)), family.mixture.coverage
+    if coverage is not None:
+        laws = [at_coverage(law, coverage) for law in laws]
+    return FamilyLaws(family, tuple(laws))
 
 
 def _first_radii(family: Family) -> list[float]:

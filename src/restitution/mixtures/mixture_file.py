@@ -14,6 +14,7 @@ from pydantic import BeforeValidator, Field, ValidationError, model_validator
 
 from restitution.case.bodies import BodyTable
 from restitution.case.case_file import in_words, naming, parse_toml, read_text
+from restitution.case.impacts import ImpactsTable
 from restitution.case.interface import InterfaceTable
 from restitution.case.materials import LIBRARY
 from restitution.case.quantities import Length
@@ -110,13 +111,15 @@ class _File(Table):
     pairs: dict[str, _Interface] = Field(default_factory=dict)
     grid: GridTable | None = None
     impact: ImpactTable
+    impacts: ImpactsTable | None = None
 
 
 @dataclass(frozen=True)
 class Mixture:
     """A checked mixture file.
 
-    `grid` is the table as written. `interfaces` maps the names of two components to the table
+    `grid` and `impacts` are the tables as written, and `coverage` is the one of the laws (None: the
+    first impact). `interfaces` maps the names of two components to the table
     `[interface]` of their pairs, and `frozenset()` to that of all other pairs.
     """
 
@@ -127,6 +130,8 @@ class Mixture:
     grid: dict[str, Any] | None
     velocities: tuple[float, ...]
     interpolation_error: float
+    impacts: dict[str, Any] | None = None
+    coverage: float | None = None
 
     def interface(self, first: Component, second: Component) -> dict[str, Any]:
         """The table `[interface]` of the pair of components `first` and `second`."""
@@ -176,7 +181,17 @@ def parse_mixture(text: str) -> Mixture:
         content.get("grid"),
         tuple(file.impact.series()),
         file.interpolation_error,
+        content.get("impacts"),
+        _coverage(file.impacts),
     )
+
+
+def _coverage(impacts: ImpactsTable | None) -> float | None:
+    if impacts is None:
+        return None
+    if impacts.coverage is None:
+        raise CaseError("impacts.count: a mixture needs coverage instead, such as coverage = 3")
+    return max(impacts.coverage)
 
 
 def _names_of(key: str, names: list[str]) -> frozenset[str]:

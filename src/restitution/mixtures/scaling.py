@@ -147,6 +147,7 @@ class FamilyLaws:
             resolved=all(estimates[k].resolved for k in used),
             quasi_static=_quasi_static(root(ratio), factors),
             factors=factors,
+            deviation=None if self.laws[0].coverage is None else mean("deviation", 0),
         )
 
 

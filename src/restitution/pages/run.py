@@ -18,6 +18,7 @@ from restitution.display import quantity
 from restitution.losses.losses import NAMES
 from restitution.pages.methods import methods
 from restitution.pages.page import Cell, Drawing, Listing, Page, PageTable, write_page
+from restitution.pages.run_in import run_in_parts
 from restitution.plots.cor import Abscissa
 from restitution.plots.oblique import has_oblique, oblique_figure
 from restitution.plots.run import (
@@ -44,6 +45,8 @@ def write_run_page(out: Path) -> Path:
         parts += [_restitution(results, abscissa) for abscissa in abscissae(results)]
         if run.oblique and has_oblique(results):
             parts.append(_oblique_drawing(results, run.oblique))
+        if run.run_in:
+            parts += run_in_parts(run.run_in, run.impacts, summary["run_in"])
         parts.append(_force(results))
         if has_patches(results):
             parts.append(_patches(results))

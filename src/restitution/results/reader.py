@@ -23,14 +23,20 @@ from restitution.curve.oblique import MeanObliquePoint, ObliquePoint
 from restitution.curve.point import MeanPoint, Point
 from restitution.display import counted, quantity, summary_html, summary_text
 from restitution.errors import CaseError, OutputError, first_problem
+from restitution.repeated.points import RepeatedImpact, RunInPoint
 from restitution.results.checksums import check_file
 from restitution.results.coordinates import with_coordinates
 from restitution.results.schema import (
     ALL_COLUMNS,
     ALL_OBLIQUE_COLUMNS,
     COLUMNS,
+    COVERAGE_FILE,
+    IMPACT_COLUMNS,
+    IMPACTS_FILE,
     OBLIQUE_COLUMNS,
     OBLIQUE_FILE,
+    RUN_IN_COLUMNS,
+    SEQUENCE,
     STATUS,
 )
 from restitution.results.stored_files import (
@@ -194,6 +200,28 @@ class RunResults:
         rows = _read_rows(path, OBLIQUE_COLUMNS, ALL_OBLIQUE_COLUMNS)
         kind = MeanObliquePoint if "realisations" in rows[0] else ObliquePoint
         return tuple(map(kind.of_cells, rows))
+
+    @cached_property
+    def run_in(self) -> tuple[RunInPoint, ...]:
+        """COR at each velocity and coverage, from `coverage.csv`; empty without this file."""
+        path = self._file(COVERAGE_FILE)
+        if not path.exists():
+            return ()
+        return tuple(map(RunInPoint.of_cells, _read_rows(path, RUN_IN_COLUMNS, RUN_IN_COLUMNS)))
+
+    @cached_property
+    def impacts(self) -> tuple[tuple[RepeatedImpact, ...], ...]:
+        """The impacts of each sequence, from `impacts.csv`; empty without this file."""
+        path = self._file(IMPACTS_FILE)
+        if not path.exists():
+            return ()
+        columns = {"sequence": SEQUENCE} | IMPACT_COLUMNS
+        rows = _read_rows(path, columns, columns)
+        numbers = dict.fromkeys(row["sequence"] for row in rows)
+        return tuple(
+            tuple(RepeatedImpact.of_cells(row) for row in rows if row["sequence"] == number)
+            for number in numbers
+        )
 
     def _file(self, name: str) -> Path:
         return stored_file(self.folder, name)

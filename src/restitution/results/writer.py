@@ -31,6 +31,7 @@ from restitution.curve.oblique import ObliquePoint
 from restitution.curve.periodic import PeriodicPoint
 from restitution.curve.point import Point
 from restitution.errors import OutputError, one_line
+from restitution.repeated.points import RepeatedImpact, RunInPoint
 from restitution.results.checksums import CHECKSUMS, checksums
 from restitution.results.coordinates import with_coordinates
 from restitution.results.interruption import hold_signals
@@ -55,6 +56,8 @@ class ResultsFolder:
         self.periodic: list[PeriodicPoint] = []
         self.unloading: list[tuple[float, list[tuple[float, float]]]] = []
         self.oblique: tuple[ObliquePoint, ...] = ()
+        self.run_in: tuple[RunInPoint, ...] = ()
+        self.impacts: tuple[tuple[RepeatedImpact, ...], ...] = ()
         self.dataset, self.summary = xr.Dataset(), dict[str, Any]()
         self._new = path is not None and make_folder(path)
         self._curve: IO[str] = io.StringIO()
@@ -98,6 +101,12 @@ class ResultsFolder:
         if points:
             self.put_table(OBLIQUE_FILE, points)
 
+    def put_run_in(
+        self, points: Sequence[RunInPoint], impacts: tuple[tuple[RepeatedImpact, ...], ...]
+    ) -> None:
+        """Keep the results of repeated impacts: COR at each coverage, and all impacts."""
+        self.run_in, self.impacts = tuple(points), impacts
+
     def put_table(self, name: str, points: Sequence[Record | Mapping[str, Any]]) -> None:
         """Write a table, completely or not at all."""
         if self.path is not None:
@@ -121,7 +130,9 @@ class ResultsFolder:
         kind = EnsembleResults if "realisations" in self.summary else RunResults
         if self.path is not None:
             return kind(self.path)
-        return kind.in_memory(self.curve, self.summary, self.dataset, self.oblique)
+        results = kind.in_memory(self.curve, self.summary, self.dataset, self.oblique)
+        vars(results).update(run_in=self.run_in, impacts=self.impacts)
+        return results
 
     def discard(self) -> None:
         """Remove the empty tables, and the folder if it is new, so that another run can use it."""
@@ -152,7 +163,9 @@ class ResultsFolder:
                     write_json(self.path / "summary.json", failed)
                 raise
             write_json(self.path / "summary.json", summary)
-            tables = sorted(path.name for path in self.path.glob("*.csv"))
+            tables = sorted(
+                path.name for path in self.path.iterdir() if path.suffix in (".csv", ".npz")
+            )
             more = ["maps.nc"] if (self.path / "maps.nc").is_file() else []
             write_checksums(self.path, [*tables, *more, "results.nc", "summary.json"])
 

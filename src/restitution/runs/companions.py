@@ -31,11 +31,12 @@ from restitution.curve.columns import Array
 from restitution.curve.follow import Load, Unloading, follow
 from restitution.curve.work_curve import WorkCurve
 from restitution.errors import CaseError, DomainError, RestitutionError
+from restitution.repeated.points import CONFIDENCE as CONFIDENCE
+from restitution.repeated.points import half_interval as half_interval
 from restitution.runs.log import Say, ignore
 from restitution.surfaces.refine import coarsen
 
 ENDS = ("low", "high")  # of the spread of a library value
-CONFIDENCE = 0.95  # level of the confidence interval of a mean over surfaces
 SURFACES = 7  # number of additional surfaces from which the scatter is estimated
 _TOLERANCE = 0.005  # allowed error of COR due to the steps of adhesive unloading
 
@@ -87,17 +88,6 @@ def _failed(error: RestitutionError) -> bool:
 def _solve(contact: Contact, depth: float, start: State | None) -> State:
     # Only a loading path is long enough to be worth continuing.
     return solve(contact, depth, start=start if interface_of(contact).follows_path else None)
-
-
-def half_interval(surfaces: int) -> float:
-    """Half the 95 % interval of a mean over `surfaces`, divided by their standard deviation.
-
-    Student's t/√n; NaN for one surface.
-    """
-    # stdtrit is the quantile of Student's t. Importing scipy.stats would take 30 MB more memory.
-    from scipy.special import stdtrit
-
-    return float(stdtrit(surfaces - 1, 0.5 * (1 + CONFIDENCE))) / math.sqrt(surfaces)
 
 
 @dataclass(frozen=True)

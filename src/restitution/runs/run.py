@@ -51,6 +51,7 @@ from restitution.runs.result_warnings import (
     unresolved,
     velocities_missed,
 )
+from restitution.runs.run_in import run_in
 from restitution.runs.smooth import smooth_curve
 from restitution.runs.two_scales import patch_curve, solve_patches, told
 from restitution.surfaces import describe
@@ -85,6 +86,7 @@ class _Run(RunLog):
     unloading_checks: list[dict[str, float]] = field(default_factory=list)
     sticking: Sticking | None = None
     maps: list[DepthMaps] = field(default_factory=list)
+    run_in: dict[str, Any] = field(default_factory=dict)
     unloading: dict[float, UnloadingCurve] = field(default_factory=dict)
 
 
@@ -144,6 +146,8 @@ def run_case(
             oblique, missing = oblique_points(case, contact.surface, out)
             out.put_oblique(oblique)
             run.warnings += [missing] if missing else []
+        if case.impacts is not None:
+            run.run_in = run_in(case, folder, contact, out, run.progress)
         if failure is not None:
             raise failure
     return run.summary
@@ -263,6 +267,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> d
             **total_error_summary(case, points, run.material_parts),
             "unloading_checks": run.unloading_checks,
         },
+        **({"run_in": run.run_in} if run.run_in else {}),
         **solved_with(points),
         "seconds_by_depth": run.depth_seconds,
         "versions": versions(),

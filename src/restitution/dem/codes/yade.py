@@ -60,6 +60,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
             unset=table.missing_spheres(),
             placeholder=FRICTION,
             fit=_FIT,
+            lowest=LOWEST,
             wall_density=_WALL_DENSITY,
             density=_density,
             points=partial(law_points, lowest=LOWEST),

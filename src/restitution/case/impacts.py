@@ -1,0 +1,113 @@
+"""The table `[impacts]`: many impacts one after the other, before COR is measured again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, Literal, Self
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from restitution.case.quantities import Velocity
+from restitution.case.rulebook import key
+from restitution.case.schema import Table
+from restitution.repeated.run_in import Place
+from restitution.repeated.velocities import drawn, in_turn, rayleigh
+
+MOST_IMPACTS = 100_000
+MOST_PLACES = 10_000
+
+_Listed = BeforeValidator(lambda value: value if isinstance(value, list) else [value])
+Coverage = Annotated[float, Field(gt=0)]
+
+
+class ImpactsTable(Table):
+    """How the surfaces are run in, and where COR is measured."""
+
+    count: Annotated[int, Field(gt=0, le=MOST_IMPACTS)] | None = key(
+        None, "number of impacts, instead of `coverage`", default="–"
+    )
+    coverage: Annotated[list[Coverage] | None, _Listed, Field(min_length=1, max_length=20)] = key(
+        None,
+        "one coverage or a list, at which COR is measured: number of impacts times the contact "
+        "area of smooth bodies, divided by the area of the grid",
+        default="required, or `count`",
+    )
+    place: Place = key(
+        "random",
+        'where the bodies are hit: `"random"`: both at new places; `"same"`: both at one place; '
+        '`"track"`: a wall at one place, and the sphere at new ones',
+    )
+    rough: Literal["first", "second", "both"] | None = key(
+        None,
+        'the body that has the roughness; `"both"`: each has a part of it, of several tables '
+        "`[[roughness]]` the first body the first one",
+        default='`"both"` for two equal bodies, or else the body that yields',
+    )
+    seed: Annotated[int, Field(ge=0, lt=2**32)] = key(0, "seed of the places and velocities")
+    places: Annotated[int, Field(ge=2, le=MOST_PLACES)] = key(
+        32, "number of places at which COR is measured at each coverage, as mean and distribution"
+    )
+    velocity: Annotated[list[Velocity] | None, _Listed, Field(min_length=1, max_length=10_000)] = (
+        key(
+            None,
+            "velocity of the impacts that run the surfaces in; the velocities of a list take turns",
+            default="each velocity of `[impact]` has surfaces of its own",
+        )
+    )
+    weights: list[float] | None = key(
+        None,
+        "a weight for each `velocity`: the impacts then have random velocities of this "
+        "distribution",
+        default="none",
+    )
+    distribution: Literal["rayleigh"] | None = key(
+        None,
+        '`"rayleigh"`: random velocities with the mean `velocity`, as in a gas with the velocity '
+        "distribution of Maxwell",
+        default="none",
+    )
+
+    @model_validator(mode="after")
+    def _one_way(self) -> Self:
+        if (self.count is None) == (self.coverage is None):
+            raise ValueError("give either count or coverage, such as coverage = 3")
+        if self.weights is not None:
+            self._check_weights(self.weights)
+        if self.distribution is not None and (self.velocity is None or len(self.velocity) != 1):
+            raise ValueError(
+                f'distribution: "{self.distribution}" needs one velocity, its mean; give '
+                'velocity = "0.05 m/s"'
+            )
+        if self.distribution is not None and self.weights is not None:
+            raise ValueError("weights: is a distribution already; remove weights or distribution")
+        return self
+
+    def _check_weights(self, weights: list[float]) -> None:
+        if self.velocity is None or len(self.velocity) != len(weights):
+            count = 0 if self.velocity is None else len(self.velocity)
+            raise ValueError(
+                f"weights: {len(weights)} weights for {count} velocities; give one for each "
+                "velocity of [impacts]"
+            )
+        for value in weights:
+            if not value >= 0:
+                raise ValueError(
+                    f"weights: {value:g} is not 0 or a positive number; a distribution of "
+                    "velocities is never negative"
+                )
+        if not sum(weights) > 0:
+            raise ValueError("weights: are all 0; give at least one positive weight")
+
+    @property
+    def own_surfaces(self) -> bool:
+        """Whether each velocity of `[impact]` runs in surfaces of its own."""
+        return self.velocity is None
+
+    def velocities(self, own: float, seed: int) -> Iterator[float]:
+        """Velocities (m/s) of the impacts, without end; `own` if the table has none."""
+        listed = self.velocity or [own]
+        if self.distribution is not None:
+            return rayleigh(listed[0], seed)
+        if self.weights is not None:
+            return drawn(listed, self.weights, seed)
+        return in_turn(listed)

@@ -1,0 +1,271 @@
+"""The run-in of a case: impacts one after the other, and COR at several coverages."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from restitution.case.case import Case
+from restitution.case.impacts import ImpactsTable
+from restitution.contact.contact import Contact, smooth
+from restitution.contact.models import COMPANION
+from restitution.curve.columns import array
+from restitution.errors import CaseError
+from restitution.repeated.points import (
+    RepeatedImpact,
+    RunInPoint,
+    SteadyState,
+    half_interval,
+)
+from restitution.repeated.run_in import RunIn, repeats
+from restitution.results.schema import COVERAGE_FILE, IMPACTS_FILE
+from restitution.results.writer import ResultsFolder, replace_file
+from restitution.runs.log import Say, ignore
+from restitution.surfaces import Surface, describe
+from restitution.surfaces.refine import coarsen
+
+OTHERS = 2  # number of additional sequences, on other surfaces, for the scatter
+_OTHER_SURFACE = 500  # added to the seed of the roughness of the second body
+_OTHER_SEED = 1000  # seeds of sequences on other surfaces differ by this number
+_PROBES = 77  # added to the seed of the places at which COR is measured
+
+
+@dataclass(frozen=True)
+class _Sequence:
+    """Impacts on one pair of surfaces, and COR at the stated coverages, by velocity."""
+
+    impacts: list[RepeatedImpact]
+    points: list[RunInPoint]
+    surfaces: tuple[Surface, Surface]
+
+
+def sequences(case: Case) -> int:
+    """Number of sequences of impacts of `case`, those for the error included."""
+    if case.impacts is None or case.impact is None:
+        return 0
+    count = len(case.impact.series()) if case.impacts.own_surfaces else 1
+    return count * (2 + OTHERS if case.total_error else 1)
+
+
+def run_in(
+    case: Case, folder: Path, contact: Contact, out: ResultsFolder, progress: Say = ignore
+) -> dict[str, Any]:
+    """Run the surfaces of `case` in, write the tables and the final surfaces; return the summary.
+
+    `contact` is the contact of the new bodies. Raises `CaseError` if a surface does not repeat.
+    """
+    table = _table(case)
+    case.impact_counts(contact.grid)
+    bodies = _bodies(case, folder)
+    own = list(_sequences(case, contact, bodies, table.seed, progress, "run-in"))
+    points = [point for one in own for point in one.points]
+    if case.total_error:
+        points = _with_errors(case, folder, contact, bodies, points, progress)
+    out.put_table(COVERAGE_FILE, points)
+    impacts = [
+        {"sequence": float(k)} | row.cells() for k, one in enumerate(own, 1) for row in one.impacts
+    ]
+    out.put_table(IMPACTS_FILE, impacts)
+    out.put_run_in(points, tuple(tuple(one.impacts) for one in own))
+    return {
+        "place": table.place,
+        "rough": _rough(case),
+        "places": table.places,
+        "own_surfaces": table.own_surfaces,
+        "coverage_means": "number of impacts times the contact area of smooth bodies, divided by "
+        "the area of the grid",
+        "sequences": [_described(k, one, out) for k, one in enumerate(own, 1)],
+        "largest_total_error": max(
+            (p.total_error for p in points if math.isfinite(p.total_error)), default=None
+        ),
+    }
+
+
+def _table(case: Case) -> ImpactsTable:
+    assert case.impacts is not None
+    return case.impacts
+
+
+def _velocities(case: Case) -> list[float]:
+    assert case.impact is not None
+    return case.impact.series()
+
+
+def _rough(case: Case) -> str:
+    given, yields = _table(case).rough, case.yielding().yields
+    if given is not None:
+        return given
+    bodies = list(case.bodies().values())
+    equal = bodies[0] == bodies[1] and all(part.kind != "measured" for part in case.roughness)
+    if equal and case.roughness:
+        return "both"
+    return yields if yields in ("first", "second") else "first"
+
+
+def _bodies(case: Case, folder: Path) -> tuple[Surface, Surface]:
+    """The surfaces of the two bodies."""
+    whole = case.surface(folder)
+    if not repeats(whole):
+        raise CaseError(
+            "roughness.file: opposite edges of the scan do not match, so it does not repeat, as "
+            '[impacts] needs; set roughness.extend = "twin"'
+        )
+    flat, rough = smooth(whole.grid), _rough(case)
+    if rough == "first":
+        return whole, flat
+    if rough == "second":
+        return flat, whole
+    if len(case.roughness) > 1:
+        first, rest = (
+            case.model_copy(update={"roughness": part}).surface(folder)
+            for part in (case.roughness[:1], case.roughness[1:])
+        )
+        return first, rest
+    other = _variant(case, _OTHER_SURFACE).surface(folder)
+    return _scaled(whole), _scaled(other)
+
+
+def _variant(case: Case, number: int) -> Case:
+    """The case with other random surfaces; mirror images of a scan do not repeat."""
+    parts = tuple(
+        part.variant(number) if getattr(part, "seed", None) is not None else part
+        for part in case.roughness
+    )
+    return case.model_copy(update={"roughness": parts})
+
+
+def _scaled(surface: Surface) -> Surface:
+    """Half of the variance, so that two bodies together have the given roughness."""
+    return replace(surface, height=surface.height * math.sqrt(0.5))
+
+
+def _coarser(bodies: tuple[Surface, Surface]) -> tuple[Surface, Surface]:
+    first, second = (
+        replace(coarse, provenance={**coarse.provenance, COMPANION: "coarser"})
+        for coarse in map(coarsen, bodies)
+    )
+    return first, second
+
+
+def _sequences(
+    case: Case,
+    contact: Contact,
+    bodies: tuple[Surface, Surface],
+    seed: int,
+    progress: Say,
+    words: str,
+) -> Iterator[_Sequence]:
+    """One sequence for each velocity, or one for all, as the case says."""
+    table, velocities = _table(case), _velocities(case)
+    groups = [[V] for V in velocities] if table.own_surfaces else [velocities]
+    first, second = bodies
+    new = replace(contact, surface=first)
+    for measured in groups:
+        runs = RunIn(new, second, place=table.place, seed=seed)
+        at = f" at {measured[0]:.3g} m/s" if table.own_surfaces else ""
+        progress(f"{words}{at}")
+        yield _sequence(runs, table, measured, seed)
+
+
+def _sequence(runs: RunIn, table: ImpactsTable, measured: Sequence[float], seed: int) -> _Sequence:
+    impacts: list[RepeatedImpact] = []
+    points = _measure(runs, table, measured, seed)
+    following = runs.impacts(table.velocities(measured[0], seed))
+    if table.count is not None:
+        impacts += (next(following) for _ in range(table.count))
+        points += _measure(runs, table, measured, seed)
+    for coverage in sorted(set(table.coverage or [])):
+        while not impacts or coverage - runs.coverage > 0.5 * runs.coverage / len(impacts):
+            impacts.append(next(following))
+        points += _measure(runs, table, measured, seed)
+    return _Sequence(impacts, points, runs.surfaces)
+
+
+def _measure(
+    runs: RunIn, table: ImpactsTable, velocities: Sequence[float], seed: int
+) -> list[RunInPoint]:
+    return [RunInPoint.of(list(runs.probe(V, table.places, seed + _PROBES))) for V in velocities]
+
+
+def _with_errors(
+    case: Case,
+    folder: Path,
+    contact: Contact,
+    bodies: tuple[Surface, Surface],
+    points: list[RunInPoint],
+    progress: Say,
+) -> list[RunInPoint]:
+    """Add the errors due to grid and surfaces, from sequences on cells twice as large."""
+    table = _table(case)
+
+    def coarse(other: tuple[Surface, Surface], seed: int, words: str) -> np.ndarray[Any, Any]:
+        coarser = _coarser(other)
+        on = replace(contact, surface=coarser[0])
+        found = _sequences(case, on, coarser, seed, progress, words)
+        return array([point for one in found for point in one.points], "restitution")
+
+    same = coarse(bodies, table.seed, "error: cells twice as large")
+    others = [
+        coarse(
+            _bodies(_variant(case, k), folder),
+            table.seed + _OTHER_SEED * k,
+            f"error: surface {k} of {OTHERS}",
+        )
+        for k in range(1, OTHERS + 1)
+    ]
+    e, coverage = array(points, "restitution"), array(points, "coverage")
+    rows = np.array([same, *others])
+    half = half_interval(len(rows))
+    new = []
+    for k, point in enumerate(points):
+        # Differences vanish by chance at single velocities, so those of all are combined.
+        level = np.isclose(coverage, point.coverage, rtol=0.2, atol=1e-3)
+        change = max(abs(float(e[k] - same[k])), math.sqrt(float(np.mean((e - same)[level] ** 2))))
+        deviation = math.sqrt(float(np.mean(rows[:, level].var(axis=0, ddof=1))))
+        scatter = abs(float(same[k] - rows[:, k].mean())) + half * deviation
+        parts = (point.places_error, point.solver_error, change, scatter)
+        total = min(math.hypot(*parts), max(point.restitution, 1 - point.restitution))
+        new.append(
+            replace(
+                point,
+                discretisation_error=change,
+                surface_scatter=scatter,
+                total_error=total,
+            )
+        )
+    return new
+
+
+def _described(number: int, one: _Sequence, out: ResultsFolder) -> dict[str, Any]:
+    """Summary of a sequence: its steady state, and its final surfaces, which are stored."""
+    steady = SteadyState.of(one.impacts)
+    surfaces = {}
+    for name, surface in zip(("first", "second"), one.surfaces, strict=True):
+        if not surface.height.any():
+            continue
+        file = f"run-in-{number}-{name}.npz"
+        if out.path is not None:
+            _store(out.path / file, surface)
+        surfaces[name] = {"file": file, **describe(surface)}
+    return {
+        "sequence": number,
+        "impacts": len(one.impacts),
+        "coverage": one.impacts[-1].coverage,
+        "steady_state": None if steady is None else asdict(steady),
+        "surfaces": surfaces,
+    }
+
+
+def _store(path: Path, surface: Surface) -> None:
+    """Write a surface as a file that `roughness.file` reads."""
+
+    def write(to: Path) -> None:
+        with to.open("wb") as file:
+            np.savez_compressed(file, height=surface.height, size=np.array(surface.grid.size))
+
+    replace_file(path, write)
