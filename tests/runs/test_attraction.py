@@ -147,6 +147,9 @@ def test_errors_come_from_grid_surfaces_and_materials():
             flat = np.array([1.0, 10.0])
             return [WorkCurve(flat, flat, np.full(2, force)) for force in (2.2, 1.8)]
 
+        def scales(self):
+            return None
+
         def material_ends(self):
             return [("low", "high")]
 

@@ -65,7 +65,7 @@ class CohesiveLaw(Adhesion):
     separation, and the repulsion must grow without bound as the gap decreases.
     """
 
-    bytes_per_node = 1800.0  # some 100 states of unloading are kept, with 16 bytes per node each
+    bytes_per_node = 1800.0  # up to 100 states are kept, with 16 bytes per node each
     follows_path = True
 
     @abstractmethod
