@@ -182,6 +182,8 @@ def _advice(case: Case, points: Sequence[Point], summary: dict[str, Any]) -> str
     if any(f"{CLEANING} = " in warning for warning in summary["warnings"]):
         return ""
     part = largest_part(points)
+    if part == "surface_scatter" and case.impacts:  # coverage.csv has the means over places
+        return ""
     material = summary["diagnostics"].get("material_advice", "")
     if part == "surface_scatter":
         n = case.realisations
