@@ -14,9 +14,11 @@ from hypothesis import strategies as st
 from contact_keys import contact_of
 from restitution.collision import collide
 from restitution.contact.bodies import Body, Pair
-from restitution.contact.cohesive import path as cohesive_path
+from restitution.contact.cohesive import steps as cohesive_steps
 from restitution.contact.cohesive.law import Cohesive
-from restitution.contact.cohesive.path import follow, load_cohesive, separation_of
+from restitution.contact.cohesive.loading import load_cohesive
+from restitution.contact.cohesive.separation import separation_of
+from restitution.contact.cohesive.steps import follow
 from restitution.contact.contact import Contact, smooth
 from restitution.contact.loading import solve, step
 from restitution.contact.path import unloading_path
@@ -252,14 +254,14 @@ def test_bad_input(options, words):
 
 def test_each_step_adds_its_error(monkeypatch):
     """Smooth steps add what they leave unaccounted for, jumps their uncertainty."""
-    steps, accounted = [], cohesive_path._accounted
+    steps, accounted = [], cohesive_steps._accounted
 
     def watched(state, trial, is_smooth):
         new = accounted(state, trial, is_smooth)
         steps.append((state, trial, is_smooth, new))
         return new
 
-    monkeypatch.setattr(cohesive_path, "_accounted", watched)
+    monkeypatch.setattr(cohesive_steps, "_accounted", watched)
     [*approach(sphere(1.0, 1.0))]
     assert {is_smooth for _, _, is_smooth, _ in steps} == {False, True}
     for state, trial, is_smooth, new in steps:
@@ -276,13 +278,13 @@ def test_each_step_adds_its_error(monkeypatch):
 
 def test_increments_of_plastic_work_add_their_error(monkeypatch):
     monkeypatch.setattr(ExpandingCavity, "work", lambda *_: (0.0, 1e-20))
-    tried, make = [], cohesive_path._try
+    tried, make = [], cohesive_steps._try
 
     def watched(state, at, residual):
         tried.append((state, make(state, at, residual)))
         return tried[-1][1]
 
-    monkeypatch.setattr(cohesive_path, "_try", watched)
+    monkeypatch.setattr(cohesive_steps, "_try", watched)
     contact = sphere(0.5, 2.0, yield_strength=0.02 * E_STAR)
     begin = load_cohesive(contact, -math.inf, start=None, residual=1e-8)
     for _ in zip(follow(begin, 0.5 * Z0, residual=1e-8), range(5), strict=False):
