@@ -20,6 +20,7 @@ from restitution.contact.cohesive.steps import ACCURACY, follow, reference_energ
 from restitution.contact.models import Separation
 from restitution.contact.state import State
 from restitution.numerics.box import reframe, shape_of, union
+from restitution.numerics.quadrature import integrate_curve
 
 _RESIDUAL = 1e-8  # tolerance of the solves under tension and at rest
 # States are inserted at the largest tension until it agrees with its parabola within this fraction.
@@ -204,7 +205,9 @@ def separation_of(path: list[State]) -> Separation:
     lost = end.adhesive_loss - start.adhesive_loss
     plastic = end.plastic_work - start.plastic_work
     work = start.potential_energy - lost - plastic
-    steps = abs(end.work_error - start.work_error)
+    depth, force = ([getattr(state, key) for state in path] for key in ("indentation", "force"))
+    by_force = end.potential_energy - integrate_curve(depth, force)
+    steps = max(abs(end.work_error - start.work_error), abs(by_force - work))
     last = max((k for k, state in enumerate(path) if state.contact_nodes), default=0)
     return Separation(
         unloading_work=work,
