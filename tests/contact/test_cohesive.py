@@ -16,7 +16,7 @@ from restitution.collision import collide
 from restitution.contact.bodies import Body, Pair
 from restitution.contact.cohesive import steps as cohesive_steps
 from restitution.contact.cohesive.law import Cohesive
-from restitution.contact.cohesive.loading import load_cohesive
+from restitution.contact.cohesive.loading import load_cohesive, load_until
 from restitution.contact.cohesive.separation import separation_of
 from restitution.contact.cohesive.steps import follow
 from restitution.contact.contact import Contact, smooth
@@ -371,3 +371,28 @@ def test_a_shallower_state_is_loaded_from_the_path_to_a_deeper_one():
     assert state.force == approx(afresh.force, rel=1e-3)
     assert state.loading_work == approx(afresh.loading_work, rel=1e-3)
     assert state.convolutions < 0.5 * afresh.convolutions
+
+
+def test_a_path_goes_on_where_the_distance_is_estimated_too_small():
+    goal = 8 * Z0
+    for short in (lambda *_: 0.0, lambda *_: -1e-9):
+        before, after = load_until(
+            sphere(0.5, 2.0),
+            lambda state: state.indentation >= goal,
+            short,
+            start=None,
+            residual=1e-8,
+        )
+        assert before.force > 0
+        assert before.indentation < goal <= after.indentation < goal + Z0
+
+
+def test_separation_does_not_depend_on_the_length_of_the_steps(monkeypatch):
+    """The smallest gap reaches that of the largest attraction between two states of unloading."""
+    contact = sphere(0.5, 2.0)
+    state = replace(solve(contact, 2 * Z0), before=None)
+    found = [separation_of([*unloading_path(state)]).separation_indentation]
+    for name, value in (("_UNDER_TENSION", 0.05), ("_GROWTH", 1.1)):
+        monkeypatch.setattr(cohesive_steps, name, value)
+    found.append(separation_of([*unloading_path(state)]).separation_indentation)
+    assert found[0] == approx(found[1], abs=0.01 * Z0)

@@ -87,7 +87,7 @@ def load_until(
         if before.force > 0 and before.before is not None:
             stiffness = before.force - before.before.force
             stiffness /= before.indentation - before.before.indentation
-            way = min(way, _BEYOND * ahead(before, stiffness))
+            way = min(way, max(_BEYOND * ahead(before, stiffness), _ONWARD * z0))
         for state in follow(before, before.indentation + way, residual=residual):
             if reached(state):
                 return before, state

@@ -15,6 +15,7 @@ from restitution.contact.cohesive.equilibrium import (
     law_of,
     solve_cohesive,
     with_interaction,
+    with_losses_of,
 )
 from restitution.contact.cohesive.steps import ACCURACY, follow, reference_energy
 from restitution.contact.models import Separation
@@ -150,14 +151,7 @@ def _between(a: CohesiveState, b: CohesiveState, at: float) -> CohesiveState:
     share = (at - b.indentation) / (a.indentation - b.indentation)
     p = b.box_pressure + share * (reframe(a.box_pressure, a.box, b.box) - b.box_pressure)
     new = solve_cohesive(b.contact, at, b.box, p=p, limit=b.bound, history=b, residual=_RESIDUAL)
-    return with_interaction(
-        replace(
-            new,
-            adhesive_loss=b.adhesive_loss,
-            jumps=b.jumps,
-            unaccounted=b.unaccounted,
-        )
-    )
+    return with_losses_of(b, new)
 
 
 def _shared(
@@ -208,27 +202,37 @@ def separation_of(path: list[State]) -> Separation:
     depth, force = ([getattr(state, key) for state in path] for key in ("indentation", "force"))
     by_force = end.potential_energy - integrate_curve(depth, force)
     steps = max(abs(end.work_error - start.work_error), abs(by_force - work))
-    last = max((k for k, state in enumerate(path) if state.contact_nodes), default=0)
     return Separation(
         unloading_work=work,
         error=steps + law_of(start.contact).grid_loss(start.contact) * lost,
         adhesive_loss=lost,
         pull_off_force=_largest_tension(path),
-        separation_indentation=path[min(last + 1, len(path) - 1)].indentation,
+        separation_indentation=_end_of_contact(path),
         convolutions=sum(state.convolutions for state in path[1:]),
         steps=len(path) - 1,
     )
 
 
+def _end_of_contact(path: list[State]) -> float:
+    """Indentation (m) at which the smallest gap becomes that of the largest attraction."""
+    last = max((k for k, state in enumerate(path) if state.contact_nodes), default=None)
+    if last is None or last + 1 == len(path):
+        return path[0 if last is None else -1].indentation
+    before, after = (cast(CohesiveState, state) for state in path[last : last + 2])
+    if before.jumps != after.jumps:
+        return after.indentation
+    goal = law_of(before.contact).gap_of_largest_traction
+    way = (goal - before.smallest_gap) / (after.smallest_gap - before.smallest_gap)
+    return before.indentation + way * (after.indentation - before.indentation)
+
+
 def _largest_tension(path: list[State]) -> float:
     """Largest tension (N): the vertex of a parabola, or a force if it jumps there."""
-    force = np.array([state.force for state in path])
-    k = int(force.argmin())
-    largest = max(0.0, -float(force[k]))
-    around = path[k - 1 : k + 2]
-    if not 0 < k < len(path) - 1 or len({cast(CohesiveState, s).jumps for s in around}) > 1:
+    force = [state.force for state in path]
+    k = int(np.argmin(force))
+    largest = max(0.0, -force[k])
+    around = [cast(CohesiveState, state) for state in path[max(k - 1, 0) : k + 2]]
+    alike = len({state.jumps for state in around}) == 1
+    if len(around) < 3 or not alike or len({state.force for state in around}) == 1:
         return largest
-    depth = np.array([state.indentation for state in around]) - path[k].indentation
-    scale = float(np.abs(depth).max())
-    a, b, c = np.polyfit(depth / scale, force[k - 1 : k + 2], 2)
-    return max(largest, float(b * b / (4 * a) - c)) if a > 0 else largest
+    return max(largest, -_vertex(*around)[1])
