@@ -31,7 +31,8 @@ TESTS = {
     "contact/jkr/separation.py": "contact/test_separation.py contact/test_cohesive.py "
     "contact/test_energy_account.py test_collision.py verification/test_adhesive_restitution.py",
     "contact/cohesive/law.py": "contact/test_cohesive.py",
-    "contact/cohesive/path.py": "contact/test_cohesive.py contact/test_periodic_cohesive.py",
+    "contact/cohesive/steps.py": "contact/test_cohesive.py contact/test_periodic_cohesive.py",
+    "contact/cohesive/separation.py": "contact/test_cohesive.py contact/test_periodic_cohesive.py",
     "collision.py": "test_collision.py contact/test_energy_account.py contact/test_separation.py "
     "verification/test_adhesive_restitution.py",
     "numerics/quadrature.py": "numerics/test_quadrature.py",

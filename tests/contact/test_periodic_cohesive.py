@@ -13,7 +13,8 @@ from contact_keys import contact_of
 from restitution import Body, Contact, Grid, Pair, Surface, solve, solve_at_pressure, step
 from restitution.contact.cohesive.equilibrium import box_gap, rigid_start
 from restitution.contact.cohesive.law import Cohesive
-from restitution.contact.cohesive.path import follow, separation_of
+from restitution.contact.cohesive.separation import separation_of
+from restitution.contact.cohesive.steps import follow
 from restitution.contact.jkr.limit import JKRLimit
 from restitution.contact.path import unloading_path
 from restitution.errors import CaseError, DomainError

@@ -9,7 +9,7 @@ import pytest
 
 from restitution import Body, Contact, Grid, Pair, collide, generate_surface, smooth, solve
 from restitution.case.models import adhesion_of
-from restitution.contact.cohesive import path as cohesive_path
+from restitution.contact.cohesive import separation as cohesive_separation
 from restitution.contact.jkr import separation
 from restitution.contact.jkr.approach import HertzianApproach, PullIncrements
 from restitution.contact.jkr.detachment import CrackClosure
@@ -186,13 +186,13 @@ def test_the_largest_tension_is_that_of_a_parabola():
         return [SimpleNamespace(indentation=x, force=F, jumps=n) for x, F, n in numbers]
 
     inside = path((0.32, 0.31, 0.298, 0.28))
-    assert cohesive_path._largest_tension(inside) == approx(5.0, rel=1e-9)
+    assert cohesive_separation._largest_tension(inside) == approx(5.0, rel=1e-9)
     coarse = -inside[2].force
     assert coarse < 5 * (1 - 1e-3)
     for jumps in ((0, 0, 0, 1), (0, 1, 1, 1), (0, 0, 1, 1)):
         jumped = path((0.32, 0.31, 0.298, 0.28), jumps)
         expected = 5.0 if jumps == (0, 1, 1, 1) else coarse
-        assert cohesive_path._largest_tension(jumped) == approx(expected, rel=1e-9)
+        assert cohesive_separation._largest_tension(jumped) == approx(expected, rel=1e-9)
     for ends in (inside[2:], inside[:3]):
-        assert cohesive_path._largest_tension(ends) == coarse
-    assert cohesive_path._largest_tension(path((0.35, 0.34, 0.33, 0.32))) == 0.0
+        assert cohesive_separation._largest_tension(ends) == coarse
+    assert cohesive_separation._largest_tension(path((0.35, 0.34, 0.33, 0.32))) == 0.0

@@ -27,8 +27,6 @@ Secant = Callable[[Array, Array, Array, Array], Array]
 MOST_STEPS = 300  # Newton steps after which the solve counts as not converged
 _MOST_ITERATIONS = 500  # limit on the conjugate-gradient iterations of one Newton step
 _FORCING = 0.1  # largest relative residual of the linear system of a Newton step
-# The smallest one, as a fraction of the reduction of the residual that is left.
-_ENOUGH = 0.01
 
 # Let q be the actual decrease of the energy in a step, divided by the predicted decrease. The step
 # is accepted if q > _TAKEN. The trust region shrinks if q < _POOR. It grows if q > _GOOD and the
@@ -89,9 +87,7 @@ def minimise_locally(
             break
         steps += 1
         h = k if secant is None else secant(u, p, slope, k)
-        least = _ENOUGH * tolerance / residual
-        limits = radius, length
-        x, Sx, at_edge, bent = _newton_step(K, r, h, energy, limits, least, zero_mean=zero_mean)
+        x, Sx, at_edge, bent = _newton_step(K, r, h, energy, (radius, length), zero_mean=zero_mean)
         negative |= bent
         predicted = dot(r, x) + 0.5 * dot(x, Sx + h * x)
         size = math.sqrt(max(dot(x, Sx), 0.0))
@@ -120,7 +116,6 @@ def _newton_step(
     k: Array,
     energy: float,
     limits: tuple[float, float],
-    least: float,
     *,
     zero_mean: bool,
 ) -> tuple[Array, Array, bool, bool]:
@@ -128,7 +123,6 @@ def _newton_step(
 
     `limits` are the radius of the trust region in the norm (xᵀK⁻¹x)^½, infinite if there is none
     yet, and the largest change of u along a direction of negative curvature while there is none.
-    `least` is the smallest relative residual of the system that is needed.
     Everything is in single precision, which is far more accurate than the step is exact.
     Return x, K⁻¹x, whether one of the limits ended the step, and whether a direction had negative
     curvature.
@@ -141,7 +135,7 @@ def _newton_step(
     K.single_precision(rest, out=d)
     rz = first = dot(rest, d)
     # Solve more accurately as the gradient falls, for superlinear convergence.
-    forcing = min(_FORCING, max(least, (first / max(abs(energy), 1e-300)) ** 0.25))
+    forcing = min(_FORCING, (first / max(abs(energy), 1e-300)) ** 0.25)
     inside = math.isinf(radius)  # no trust region yet
     xSd = xSx = dSd = 0.0
     for _ in range(_MOST_ITERATIONS):

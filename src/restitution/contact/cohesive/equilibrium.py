@@ -272,6 +272,18 @@ def interacting_box(contact: Contact, indentation: float, history: State | None 
     return box
 
 
+def with_losses_of(state: CohesiveState, new: CohesiveState) -> CohesiveState:
+    """`new`, an equilibrium on the branch of `state`, with the losses of `state`."""
+    return with_interaction(
+        replace(
+            new,
+            adhesive_loss=state.adhesive_loss,
+            jumps=state.jumps,
+            unaccounted=state.unaccounted,
+        )
+    )
+
+
 def on_box(state: CohesiveState, box: Box, *, residual: float) -> CohesiveState:
     contact, indentation = state.contact, state.indentation
     inside = reframe(np.ones(shape_of(state.box), dtype=bool), state.box, box)
@@ -283,15 +295,7 @@ def on_box(state: CohesiveState, box: Box, *, residual: float) -> CohesiveState:
     new = solve_cohesive(
         contact, indentation, box, p=p, limit=state.bound, history=state, residual=residual
     )
-    return with_interaction(
-        replace(
-            new,
-            adhesive_loss=state.adhesive_loss,
-            jumps=state.jumps,
-            unaccounted=state.unaccounted,
-            before=state.before,
-        )
-    )
+    return replace(with_losses_of(state, new), before=state.before)
 
 
 def is_unique(state: CohesiveState) -> bool:

@@ -16,13 +16,8 @@ from restitution.contact.bodies import Pair
 from restitution.contact.checks.findings import Finding, RangeUnresolved
 from restitution.contact.checks.resolution import divisions, radius_of_asperities
 from restitution.contact.cohesive.equilibrium import CohesiveState, box_gap
-from restitution.contact.cohesive.path import (
-    load_cohesive,
-    load_until,
-    move,
-    separate_cohesive,
-    separation_of,
-)
+from restitution.contact.cohesive.loading import load_cohesive, load_until, move
+from restitution.contact.cohesive.separation import separate_cohesive, separation_of
 from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import RESIDUAL
 from restitution.contact.models import (

@@ -10,7 +10,8 @@ from functools import cached_property
 import numpy as np
 
 from restitution.contact.cohesive.equilibrium import CohesiveState, law_of
-from restitution.contact.cohesive.path import follow, load_cohesive
+from restitution.contact.cohesive.loading import load_cohesive
+from restitution.contact.cohesive.steps import follow
 from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import RESIDUAL
 from restitution.contact.patch.stored import bodies_in_words, is_kept, kept

@@ -1,0 +1,238 @@
+"""Unloading of cohesive contacts to separation."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import cast
+
+import numpy as np
+
+from restitution.contact.cohesive.equilibrium import (
+    CohesiveState,
+    is_unique,
+    law_of,
+    solve_cohesive,
+    with_interaction,
+    with_losses_of,
+)
+from restitution.contact.cohesive.steps import ACCURACY, follow, reference_energy
+from restitution.contact.models import Separation
+from restitution.contact.state import State
+from restitution.numerics.box import reframe, shape_of, union
+from restitution.numerics.quadrature import integrate_curve
+
+_RESIDUAL = 1e-8  # tolerance of the solves under tension and at rest
+# States are inserted at the largest tension until it agrees with its parabola within this fraction.
+_PEAK, _MOST_INSERTED = 1e-3, 4
+_FARTHEST = 0.02  # unloading ends where the tension is below this fraction of the largest tension
+# States are compared with those of a known unloading at this many indentations. They are the same
+# if their displacements differ by at most this fraction of z₀.
+_MEETINGS, _SAME = 4, 1e-3
+
+
+def separate_cohesive(
+    state: CohesiveState, *, accuracy: float = ACCURACY, known: Sequence[State] = ()
+) -> Iterator[State]:
+    """Yield `state` and the states of unloading until the rest of the separation is reversible.
+
+    `known` are states of another unloading of the same contact, from a smaller indentation. If
+    neither has yielded and both come to the same equilibrium, the states below it are taken from
+    `known`.
+    """
+    yield from _with_largest_tension(_separating(state, accuracy, known))
+
+
+def _separating(
+    state: CohesiveState, accuracy: float, known: Sequence[State]
+) -> Iterator[CohesiveState]:
+    yield state
+    tension = max(0.0, -state.force)
+    loaded, scale = state, reference_energy(state, loading=False)
+    options = {"residual": _RESIDUAL, "accuracy": accuracy, "scale": scale}
+    state = replace(state, is_first_loading=False, before=None)
+    if accuracy >= ACCURACY:  # otherwise the steps of loading are too long
+        for earlier in _branch(loaded):
+            state = _reversed(loaded, earlier)
+            tension = max(tension, -state.force)
+            yield state
+    shared = _shared(loaded, state.indentation, known)
+    for meeting in shared[:: max(1, len(shared) // _MEETINGS)]:
+        for new in follow(state, meeting.indentation, **options):
+            tension = max(tension, -new.force)
+            state = new
+            yield new
+        if _is_same(state, meeting):
+            yield from _continued(state, shared[shared.index(meeting) :])
+            return
+    for new in follow(state, -math.inf, **options):
+        tension = max(tension, -new.force)
+        yield new
+        if new.contact_nodes == 0 and -new.force <= _FARTHEST * tension and is_unique(new):
+            return
+
+
+def _branch(state: CohesiveState) -> Iterator[CohesiveState]:
+    """The shallower states through which a contact that has not yielded unloads reversibly."""
+    if state.plastic_displacement.any():
+        return
+    while (before := state.before) is not None and before.indentation < state.indentation:
+        state = before
+        yield state
+
+
+def _reversed(loaded: CohesiveState, earlier: CohesiveState) -> CohesiveState:
+    """The state `earlier` of loading as a state of the unloading from `loaded`."""
+    return with_interaction(
+        replace(
+            earlier,
+            adhesive_loss=loaded.adhesive_loss,
+            jumps=loaded.jumps,
+            unaccounted=2 * loaded.unaccounted - earlier.unaccounted,
+            work_error=2 * loaded.work_error - earlier.work_error,
+            convolutions=0,
+            is_first_loading=False,
+            before=None,
+        )
+    )
+
+
+def _with_largest_tension(path: Iterator[CohesiveState]) -> Iterator[CohesiveState]:
+    """Yield `path`, with states inserted where the tension is largest between its states."""
+    a, b = None, None
+    for c in path:
+        if b is not None:
+            yield from _peak(a, b, c)
+        a, b = b, c
+    assert b is not None
+    yield b
+
+
+def _peak(a: CohesiveState | None, b: CohesiveState, c: CohesiveState) -> Iterator[CohesiveState]:
+    """Yield `b` and the states inserted beside it."""
+    states = [b]
+    left, middle, right = a, b, c
+    for _ in range(_MOST_INSERTED):
+        if left is None or not left.jumps == middle.jumps == right.jumps:
+            break
+        if not middle.force < min(0.0, left.force, right.force):
+            break
+        at, expected = _vertex(left, middle, right)
+        deeper = at > middle.indentation
+        if abs(at - middle.indentation) < _PEAK * abs(right.indentation - left.indentation):
+            break
+        new = _between(left if deeper else right, middle, at)
+        states.append(new)
+        if abs(new.force - expected) <= _PEAK * abs(expected):
+            break
+        if new.force < middle.force:
+            left, right = (left, middle) if deeper else (middle, right)
+            middle = new
+        elif deeper:
+            left = new
+        else:
+            right = new
+    yield from sorted(states, key=lambda state: -state.indentation)
+
+
+def _vertex(a: CohesiveState, b: CohesiveState, c: CohesiveState) -> tuple[float, float]:
+    """Indentation and force at the vertex of the parabola through three states."""
+    left, right = b.indentation - a.indentation, c.indentation - b.indentation
+    slopes = (b.force - a.force) / left, (c.force - b.force) / right
+    second = (slopes[1] - slopes[0]) / (left + right)
+    slope = slopes[0] + second * left
+    way = -0.5 * slope / second
+    return b.indentation + way, b.force + 0.5 * slope * way
+
+
+def _between(a: CohesiveState, b: CohesiveState, at: float) -> CohesiveState:
+    """The equilibrium at an indentation between two states of one branch, near `b`."""
+    share = (at - b.indentation) / (a.indentation - b.indentation)
+    p = b.box_pressure + share * (reframe(a.box_pressure, a.box, b.box) - b.box_pressure)
+    new = solve_cohesive(b.contact, at, b.box, p=p, limit=b.bound, history=b, residual=_RESIDUAL)
+    return with_losses_of(b, new)
+
+
+def _shared(
+    loaded: CohesiveState, indentation: float, known: Sequence[State]
+) -> list[CohesiveState]:
+    """The states of `known`, not above `indentation`, that unloading may pass through."""
+    path = [cast(CohesiveState, earlier) for earlier in known]
+    if not path or path[0].contact is not loaded.contact:
+        return []
+    if loaded.plastic_displacement.any() or path[-1].plastic_displacement.any():
+        return []
+    if path[0].indentation >= loaded.indentation:
+        return []
+    return [state for state in path if state.indentation <= indentation]
+
+
+def _is_same(state: CohesiveState, other: CohesiveState) -> bool:
+    box = union(state.box, other.box)
+    assert box is not None
+    here, there = (reframe(one.box_displacement, one.box, box) for one in (state, other))
+    inside = reframe(np.ones(shape_of(state.box), dtype=bool), state.box, box)
+    inside &= reframe(np.ones(shape_of(other.box), dtype=bool), other.box, box)
+    apart = float(np.abs(here - there)[inside].max(initial=0.0))
+    return apart <= _SAME * law_of(state.contact).equilibrium_separation
+
+
+def _continued(state: CohesiveState, path: Sequence[CohesiveState]) -> Iterator[CohesiveState]:
+    """Yield `path` after its first state, with the losses and errors of `state` added."""
+    first = path[0]
+    for new in path[1:]:
+        yield with_interaction(
+            replace(
+                new,
+                adhesive_loss=state.adhesive_loss + new.adhesive_loss - first.adhesive_loss,
+                jumps=state.jumps + new.jumps - first.jumps,
+                unaccounted=state.unaccounted + new.unaccounted - first.unaccounted,
+                work_error=state.work_error + new.work_error - first.work_error,
+                convolutions=0,
+            )
+        )
+
+
+def separation_of(path: list[State]) -> Separation:
+    start, end = cast(CohesiveState, path[0]), cast(CohesiveState, path[-1])
+    lost = end.adhesive_loss - start.adhesive_loss
+    plastic = end.plastic_work - start.plastic_work
+    work = start.potential_energy - lost - plastic
+    depth, force = ([getattr(state, key) for state in path] for key in ("indentation", "force"))
+    by_force = end.potential_energy - integrate_curve(depth, force)
+    steps = max(abs(end.work_error - start.work_error), abs(by_force - work))
+    return Separation(
+        unloading_work=work,
+        error=steps + law_of(start.contact).grid_loss(start.contact) * lost,
+        adhesive_loss=lost,
+        pull_off_force=_largest_tension(path),
+        separation_indentation=_end_of_contact(path),
+        convolutions=sum(state.convolutions for state in path[1:]),
+        steps=len(path) - 1,
+    )
+
+
+def _end_of_contact(path: list[State]) -> float:
+    """Indentation (m) at which the smallest gap becomes that of the largest attraction."""
+    last = max((k for k, state in enumerate(path) if state.contact_nodes), default=None)
+    if last is None or last + 1 == len(path):
+        return path[0 if last is None else -1].indentation
+    before, after = (cast(CohesiveState, state) for state in path[last : last + 2])
+    if before.jumps != after.jumps:
+        return after.indentation
+    goal = law_of(before.contact).gap_of_largest_traction
+    way = (goal - before.smallest_gap) / (after.smallest_gap - before.smallest_gap)
+    return before.indentation + way * (after.indentation - before.indentation)
+
+
+def _largest_tension(path: list[State]) -> float:
+    """Largest tension (N): the vertex of a parabola, or a force if it jumps there."""
+    force = [state.force for state in path]
+    k = int(np.argmin(force))
+    largest = max(0.0, -force[k])
+    around = [cast(CohesiveState, state) for state in path[max(k - 1, 0) : k + 2]]
+    alike = len({state.jumps for state in around}) == 1
+    if len(around) < 3 or not alike or len({state.force for state in around}) == 1:
+        return largest
+    return max(largest, -_vertex(*around)[1])
