@@ -7,14 +7,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, Literal, Protocol
+from typing import Any
 
 import numpy as np
 
-from restitution.case.interface import InterfaceTable, Yielding
-from restitution.case.rulebook import Input, Key
-from restitution.case.schema import GridTable
-from restitution.contact.bodies import Pair
+from restitution.case.roughness_keys import ADHESIVE_CELLS, CELLS, BelowGrid
+from restitution.case.tables import CaseTables
 from restitution.contact.checks.resolution import predicted_radius
 from restitution.display import quantity
 from restitution.errors import CaseError
@@ -24,9 +22,6 @@ from restitution.surfaces import Surface, refine, rms_slope
 from restitution.surfaces.refine import divided
 from restitution.surfaces.split import SplitSurface, cut, long_waves
 
-BelowGrid = Literal["patch", "omit"]
-# Defaults of `split`, in cells of the grid. With adhesion, more waves make a law of longer range.
-CELLS, ADHESIVE_CELLS = 2, 4
 # Edge of a patch divided by the longest wave in it; patches that adhere are solved more slowly.
 _EDGE, _ADHESIVE_EDGE = 8.0, 4.0
 _LEAST_EDGE = 2.0  # the least such ratio, on a scan that is too small
@@ -35,52 +30,6 @@ _MOST_NODES = 2048  # along the edge of a patch
 _BYTES = 250.0  # per node of a window
 _MOST_REFINED = 512  # nodes along the edge of a patch that is refined for its adhesion
 _REACH = 0.5  # cell divided by sqrt(r z₀) for asperities of radius r (docs/adhesion.md)
-
-BELOW_GRID = Key(
-    'what happens to waves that the grid does not carry ([two scales](two-scales.md)): `"patch"` '
-    'solves them on periodic patches, whose law the contact uses; `"omit"` leaves them out, and '
-    "the total error includes them",
-    default='`"omit"` for scans, `"patch"` for generated waves below two cells',
-    page=Input("Waves below the grid", more=True, empty="left out of scans"),
-)
-SPLIT = Key(
-    "wavelength at which the surface is split: shorter waves go into the patches; at least two "
-    "grid spacings, and below the contact radius",
-    default=f"{CELLS} grid spacings, with adhesion {ADHESIVE_CELLS}",
-)
-
-
-class SplitCase(Protocol):
-    """What of a `Case` decides how its surface is split."""
-
-    @property
-    def roughness(self) -> tuple[Any, ...]:
-        """The tables of the roughness."""
-
-    @property
-    def grid(self) -> GridTable:
-        """The table of the grid."""
-
-    @property
-    def interface(self) -> InterfaceTable:
-        """The table of the interface."""
-
-    @property
-    def periodic(self) -> bool:
-        """Whether the contact is periodic."""
-
-    @property
-    def can_split(self) -> bool:
-        """Whether the models of the case are defined with patches."""
-
-    def pair(self) -> Pair:
-        """The bodies."""
-
-    def yielding(self) -> Yielding:
-        """How they yield."""
-
-    def deepest_indentation(self) -> float:
-        """The deepest indentation (m)."""
 
 
 @dataclass(frozen=True)
@@ -99,7 +48,7 @@ class Splitting:
         return Grid((n, n), (self.cell, self.cell))
 
 
-def splitting_of(case: SplitCase, folder: Path) -> Splitting | None:
+def splitting_of(case: CaseTables, folder: Path) -> Splitting | None:
     """How the surface of `case` is split; None if it is not.
 
     Raises `CaseError` if the case asks for a split that is impossible.
@@ -120,7 +69,7 @@ def splitting_of(case: SplitCase, folder: Path) -> Splitting | None:
     )
 
 
-def notice_of(case: SplitCase, folder: Path) -> str | None:
+def notice_of(case: CaseTables, folder: Path) -> str | None:
     """One line if waves below the grid are left out, or if none are left to patches."""
     wanted = _wanted(case, folder)
     if wanted is None:
@@ -137,13 +86,13 @@ def notice_of(case: SplitCase, folder: Path) -> str | None:
     )
 
 
-def _wanted(case: SplitCase, folder: Path) -> tuple[float, float] | None:
+def _wanted(case: CaseTables, folder: Path) -> tuple[float, float] | None:
     """Wavelength of the split and cell of the patches (m), if waves go into patches."""
     parts, grid = case.roughness, case.grid.grid()
     choice = _choice(case)
     if grid is None or not parts or choice == "omit":
         return None
-    if not case.can_split:
+    if not _can_split(case):
         if choice is None:
             return None
         raise CaseError(
@@ -171,19 +120,29 @@ def _wanted(case: SplitCase, folder: Path) -> tuple[float, float] | None:
     return split, cell
 
 
-def _choice(case: SplitCase) -> BelowGrid | None:
+def _can_split(case: CaseTables) -> bool:
+    """Whether the models and surfaces of the case are defined with waves below the grid."""
+    interface = case.interface
+    jkr = interface.adhesion == "jkr" or interface.needs_jkr
+    if case.impacts or case.periodic or (interface.adhesive_energy and jkr):
+        return False
+    normal = all(part.is_normal for part in case.roughness)
+    return normal and case.yielding().model.bounds_solve
+
+
+def _choice(case: CaseTables) -> BelowGrid | None:
     return next((part.below_grid for part in case.roughness if part.below_grid), None)
 
 
-def _given(case: SplitCase) -> float | None:
+def _given(case: CaseTables) -> float | None:
     return next((part.split for part in case.roughness if part.split), None)
 
 
-def _contact_radius(case: SplitCase) -> float:
+def _contact_radius(case: CaseTables) -> float:
     return predicted_radius(case.pair(), case.deepest_indentation(), case.yielding().hardness)
 
 
-def _sized(case: SplitCase, folder: Path, split: float, cell: float) -> Splitting | None:
+def _sized(case: CaseTables, folder: Path, split: float, cell: float) -> Splitting | None:
     from scipy.fft import next_fast_len
 
     room = min(part.patch_room(folder) for part in case.roughness)
@@ -205,7 +164,7 @@ def _sized(case: SplitCase, folder: Path, split: float, cell: float) -> Splittin
     return Splitting(split, cell, nodes, tiles)
 
 
-def split_surface(case: SplitCase, folder: Path, surface: Surface, how: Splitting) -> SplitSurface:
+def split_surface(case: CaseTables, folder: Path, surface: Surface, how: Splitting) -> SplitSurface:
     """`surface` of `case` without short waves, and the patches that have them."""
     kin = tuple(part.of_patches() for part in case.roughness)
     patches = _patches(kin, str(folder), case.grid.grid(), how)
