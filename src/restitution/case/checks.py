@@ -44,10 +44,11 @@ def check_tables(case: CaseTables) -> None:
         raise ValueError(
             f'grid.refine: {factors} values for {depths} depths; give one for each depth, or "auto"'
         )
-    if len({part.realisations for part in case.roughness} - {1}) > 1:
-        raise ValueError(
-            "roughness.realisations: differs between the tables; give the same number in all"
-        )
+    for name in ("realisations", "below_grid", "split"):
+        if len({getattr(part, name) for part in case.roughness} - {1, None}) > 1:
+            raise ValueError(
+                f"roughness.{name}: differs between the tables; give the same value in all"
+            )
     if case.impacts is not None:
         _check_impacts(case, case.impacts)
 
@@ -94,6 +95,8 @@ def _check_period(case: CaseTables) -> None:
                     f"{name}.{loss}: acts in impacts only, and a periodic contact has none; "
                     "remove it"
                 )
+    if case.impacts is not None:
+        raise ValueError("[impacts]: a periodic contact has no impacts; remove this table")
     if case.impact is not None:
         raise ValueError(
             "[impact]: the bodies of a periodic contact have infinite mass; give "
