@@ -17,6 +17,7 @@ from restitution.case.roughness_keys import (
     BelowGrid,
     Realisations,
     Seed,
+    Stamp,
     naming,
 )
 from restitution.case.rulebook import Input, key
@@ -155,6 +156,10 @@ class GeneratedRoughness(Table):
     def of_patches(self) -> Self:
         """The table whose patches all surfaces of this kind share."""
         return self.model_copy(update={"seed": PATCH_SEED, "realisations": 1})
+
+    def stamp(self, folder: Path) -> Stamp:
+        """None: the surface has no file."""
+        return None
 
     def patch_room(self, folder: Path) -> float:
         """Largest edge (m) of a window with short waves."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
@@ -20,6 +21,7 @@ from restitution.case.roughness_keys import (
     BelowGrid,
     Realisations,
     Seed,
+    Stamp,
     naming,
 )
 from restitution.case.rulebook import Input, key
@@ -231,6 +233,13 @@ class MeasuredRoughness(Table):
         seed = None if self.seed is None else PATCH_SEED
         return self.model_copy(update={"seed": seed, "place": 0, "realisations": 1})
 
+    def stamp(self, folder: Path) -> Stamp:
+        """Time and size of the file; None if it is missing, which whoever reads it says."""
+        with suppress(OSError):
+            stat = (folder / self.file).stat()
+            return stat.st_mtime_ns, stat.st_size
+        return None
+
     def patch_room(self, folder: Path) -> float:
         """Edge (m) of the largest square window with short waves."""
         return min(self._unmoved(folder).grid.size) if self.extend is None else math.inf
@@ -241,7 +250,8 @@ class MeasuredRoughness(Table):
         return whole.height - long_waves(whole, wavelength).height
 
     def _unmoved(self, folder: Path) -> Surface:
-        return _scan_of(self.model_copy(update={"seed": None, "place": 0}), str(folder))
+        alike = self.model_copy(update={"seed": None, "place": 0})
+        return _scan_of(alike, str(folder), self.stamp(folder))
 
     def surface(
         self, grid: Grid | None, folder: Path, factor: int = 1, *, patches: bool = False
@@ -296,5 +306,5 @@ class MeasuredRoughness(Table):
 
 
 @lru_cache(maxsize=8)
-def _scan_of(part: MeasuredRoughness, folder: str) -> Surface:
+def _scan_of(part: MeasuredRoughness, folder: str, _: Stamp) -> Surface:
     return part.scan(Path(folder))

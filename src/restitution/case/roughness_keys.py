@@ -29,6 +29,8 @@ REALISATIONS = Key(
 )
 Seed = Annotated[int, Field(ge=0, lt=2**63)]
 
+# Time (ns) and size (bytes) of the file of a surface, which change if the file is replaced.
+Stamp = tuple[int, int] | None
 BelowGrid = Literal["patch", "omit"]
 BELOW_GRID = Key(
     'what happens to waves that the grid does not carry ([two scales](two-scales.md)): `"patch"` '
@@ -41,6 +43,8 @@ SPLIT = Key(
     "wavelength at which the surface is split: shorter waves go into the patches; at least two "
     "grid spacings, and below the contact radius",
     default=f"{CELLS} grid spacings, with adhesion {ADHESIVE_CELLS}",
+    only=("below_grid", "", "patch"),
+    otherwise='split: belongs to below_grid = "patch"; remove split',
 )
 
 # For each `RefusedSurfaceError.code`, the remedy in terms of the case file.
