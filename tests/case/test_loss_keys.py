@@ -116,6 +116,15 @@ def test_a_strength_from_the_hardness():
     assert hard(" H / 2.5 ", "").yield_strength == approx(7.9e9 / 2.5)  # of the library
 
 
+def test_the_spread_includes_that_of_a_hardness_of_the_library():
+    known = hard("H/3", "").from_library()
+    H, Y = known["hardness"], known["yield_strength"]
+    assert H.low < H.value < H.high
+    assert Y.low == approx(H.low / 3)
+    more = math.hypot(H.value / 2.2 - H.value / 3, (H.high - H.value) / 3)
+    assert Y.high == approx(H.value / 3 + more)
+
+
 def test_the_spread_includes_the_given_ratio():
     assert strength(7e9, 4.0).low == approx(1.75e9)
     assert strength(7e9, 2.0).high == approx(3.5e9)

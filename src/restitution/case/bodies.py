@@ -173,7 +173,9 @@ class BodyTable(Table):
                 if (supplied := getattr(known, key)) and supplied.value == getattr(self, key)
             }
         if self._ratio is not None and self.hardness is not None:
-            own = strength(self.hardness, self._ratio)
+            known_hardness = values.get("hardness")
+            spread = known_hardness and (known_hardness.low, known_hardness.high)
+            own = strength(self.hardness, self._ratio, spread)
             values |= {"yield_strength": own} if own.value == self.yield_strength else {}
         return values
 
