@@ -11,6 +11,7 @@ from restitution.losses.half_space import HalfSpace
 from restitution.losses.losses import Losses
 from restitution.losses.plate import Plate
 from restitution.losses.viscosity import Friction
+from restitution.runs.losses import loss_information
 from tolerance import approx
 
 REST = """
@@ -102,6 +103,9 @@ values = ["10 nm"]
 """
     with pytest.raises(CaseError, match=r"first\.thickness: acts in impacts only"):
         parse_case(text)
+    case = parse_case(text.replace(', thickness = "1 mm"', ""))
+    assert case.losses() == Losses()
+    assert loss_information(case) == ""
 
 
 def hard(rule, more=', hardness = "7 GPa"'):

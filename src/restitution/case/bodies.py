@@ -196,7 +196,12 @@ FROM_LIBRARY = {
 
 
 def losses_of(pair: Pair, *tables: BodyTable) -> Losses:
-    """Losses of `pair`, whose bodies are `tables`; a wall without density has no waves."""
+    """Losses of `pair`, whose bodies are `tables`: none of two flat ones, which have no impact.
+
+    A wall without density has no waves.
+    """
+    if pair.flat:
+        return Losses()
     wall = next((table for table in tables if table.radius is None), None)
     plate = waves = None
     if wall is not None and wall.density is not None:

@@ -143,7 +143,7 @@ class CaseTables(Table):
         return pair
 
     def losses(self) -> Losses:
-        """Losses besides yielding and adhesion; a wall without density has no waves."""
+        """Losses besides yielding and adhesion, by `losses_of`."""
         return losses_of(self.pair(), *self.bodies().values())
 
     def yielding(self) -> Yielding:
