@@ -57,7 +57,8 @@ def splitting_of(case: CaseTables, folder: Path) -> Splitting | None:
     wanted = _wanted(case, folder)
     if wanted is None:
         return None
-    radius = predicted_radius(case.pair(), case.deepest_indentation(), case.yielding().hardness)
+    deepest = case.indentation_at(case.depths()[-1])
+    radius = predicted_radius(case.pair(), deepest, case.yielding().hardness)
     if wanted.split > radius:
         raise CaseError(_not_separate(case, wanted, radius))
     return _sized(case, folder, wanted)

@@ -150,10 +150,6 @@ class CaseTables(Table):
         """The yield model of the contact. Raises `CaseError` if a value for it is missing."""
         return self.interface.yielding(**self.bodies())
 
-    def deepest_indentation(self) -> float:
-        """The deepest indentation (m), by `indentation_at`."""
-        return self.indentation_at(self.depths()[-1])
-
     def indentation_at(self, depth: float) -> float:
         """The indentation (m) at `depth`, one of `depths`: m, N, m/s or Pa.
 
