@@ -1,5 +1,7 @@
 """Which waves of the roughness go into patches."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -111,11 +113,63 @@ def test_models_without_patches_refuse_the_key(tmp_path, values):
         case(**values).contact(tmp_path)
 
 
-def test_scales_that_do_not_separate_are_said(tmp_path):
-    shallow = case(velocity="0.1 mm/s")
-    assert "would not be small beside the contact radius" in notice_of(shallow, tmp_path)
+def test_scales_that_do_not_separate_are_refused(tmp_path):
+    with pytest.raises(CaseError, match=r"^roughness.shortest: .*beside the contact radius"):
+        case(velocity="0.1 mm/s").contact(tmp_path)
     assert case().splitting(tmp_path) is not None
     assert notice_of(case(), tmp_path) is None
+
+
+REMEDY = re.compile(
+    r"set (?:grid\.)?(?P<key>spacing|split) to (?P<value>[\d.]+ \w+) or less, "
+    r"or roughness\.shortest to (?P<shortest>[\d.]+ \w+) or more"
+)
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"shortest": "50 nm", "velocity": "0.1 mm/s"},
+        {"shortest": "50 nm", "velocity": "0.1 mm/s", "more": 'below_grid = "patch"'},
+        {
+            "shortest": "50 nm",
+            "velocity": "0.1 mm/s",
+            "interface": 'work_of_adhesion = "0.05 J/m^2"',
+        },
+        {"more": 'split = "40 um"'},
+        {"spacing": "0.62503 um", "more": 'split = "20 um"'},
+    ],
+)
+def test_the_remedies_of_a_split_can_be_typed(tmp_path, values):
+    with pytest.raises(CaseError) as refused:
+        case(**values).splitting(tmp_path)
+    remedy = REMEDY.search(str(refused.value))
+    value = remedy["value"]
+    typed = {"spacing": value} if remedy["key"] == "spacing" else {"more": f'split = "{value}"'}
+    assert case(**{**values, **typed}).splitting(tmp_path) is not None
+    without = {**values, "more": "", "shortest": remedy["shortest"]}
+    assert case(**without).splitting(tmp_path) is None
+    assert not isinstance(case(**without).surface(tmp_path), SplitSurface)
+
+
+def test_a_split_without_patches_is_refused():
+    with pytest.raises(CaseError, match=r"^roughness: split: belongs to below_grid = "):
+        case(more='below_grid = "omit"\nsplit = "3 um"')
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "key"),
+    [
+        ('below_grid = "omit"', 'below_grid = "patch"', "below_grid"),
+        ('split = "2 um"', 'split = "3 um"', "split"),
+        ("realisations = 2", "realisations = 3", "realisations"),
+    ],
+)
+def test_tables_that_differ_are_refused(first, second, key):
+    before, table, after = re.split(r"(?=\[roughness\])|(?=\[grid\])", CASE.format(**USUAL))
+    tables = [table.replace("[roughness]", "[[roughness]]") + more for more in (first, second)]
+    with pytest.raises(CaseError, match=rf"^roughness\.{key}: differs between the tables"):
+        parse_case("\n".join([before, *tables, after]))
 
 
 def test_adhesive_bodies_have_a_law_of_finite_range(tmp_path):
@@ -128,15 +182,19 @@ def test_adhesive_bodies_have_a_law_of_finite_range(tmp_path):
     )
 
 
-def test_a_scan_on_coarse_cells(tmp_path):
-    rng = np.random.default_rng(0)
-    np.save(tmp_path / "scan.npy", 2e-9 * rng.standard_normal((160, 160)))
-    text = CASE.format(**{**USUAL, "velocity": "0.02 m/s"})
+def scan_of(folder, more="", velocity="0.02 m/s", seed=0):
+    """A case with white noise of Rq 2 nm as a scan."""
+    rng = np.random.default_rng(seed)
+    np.save(folder / "scan.npy", 2e-9 * rng.standard_normal((160, 160)))
+    text = CASE.format(**{**USUAL, "velocity": velocity})
     a, b = text.index("[roughness]"), text.index("[grid]")
     scan = '[roughness]\nkind = "measured"\nfile = "scan.npy"\nsize = "24 um"\n'
-    assert parse_case(text[:a] + scan + text[b:]).contact(tmp_path).adhesion is None
-    scan += 'below_grid = "patch"\n'
-    given = parse_case(text[:a] + scan + text[b:])
+    return parse_case(f"{text[:a]}{scan}{more}\n{text[b:]}")
+
+
+def test_a_scan_on_coarse_cells(tmp_path):
+    assert scan_of(tmp_path).contact(tmp_path).adhesion is None
+    given = scan_of(tmp_path, 'below_grid = "patch"')
     contact = given.contact(tmp_path)
     assert isinstance(contact.adhesion, PatchRepulsion)
     patch = contact.adhesion.patches[0]
@@ -145,3 +203,22 @@ def test_a_scan_on_coarse_cells(tmp_path):
     finer = given.refined(4).contact(tmp_path)
     assert finer.adhesion is None
     assert finer.surface.height.std() > 1.5 * contact.surface.height.std()
+
+
+def test_a_split_of_a_scan_asks_for_patches(tmp_path):
+    law = scan_of(tmp_path, 'split = "2 um"').contact(tmp_path).adhesion
+    assert law.wavelength == approx(2e-6)
+
+
+def test_a_split_too_long_for_the_scan(tmp_path):
+    with pytest.raises(CaseError, match=r"from a scan of 24 µm; set split to 11\.88 µm or less"):
+        scan_of(tmp_path, 'split = "13 um"', "10 m/s").contact(tmp_path)
+    assert scan_of(tmp_path, 'split = "11.88 um"', "10 m/s").splitting(tmp_path) is not None
+
+
+def test_a_scan_that_is_replaced_has_other_patches(tmp_path):
+    heights = []
+    for seed in (0, 1):
+        contact = scan_of(tmp_path, 'below_grid = "patch"', seed=seed).contact(tmp_path)
+        heights.append(contact.adhesion.patches[0].height)
+    assert not np.array_equal(*heights)

@@ -11,6 +11,7 @@ from restitution.losses.half_space import HalfSpace
 from restitution.losses.losses import Losses
 from restitution.losses.plate import Plate
 from restitution.losses.viscosity import Friction
+from restitution.runs.losses import loss_information
 from tolerance import approx
 
 REST = """
@@ -102,6 +103,9 @@ values = ["10 nm"]
 """
     with pytest.raises(CaseError, match=r"first\.thickness: acts in impacts only"):
         parse_case(text)
+    case = parse_case(text.replace(', thickness = "1 mm"', ""))
+    assert case.losses() == Losses()
+    assert loss_information(case) == ""
 
 
 def hard(rule, more=', hardness = "7 GPa"'):
@@ -114,6 +118,15 @@ def test_a_strength_from_the_hardness():
     known = wall.from_library()["yield_strength"]
     assert (known.low, known.high) == (approx(7e9 / 3), approx(7e9 / 2.2))
     assert hard(" H / 2.5 ", "").yield_strength == approx(7.9e9 / 2.5)  # of the library
+
+
+def test_the_spread_includes_that_of_a_hardness_of_the_library():
+    known = hard("H/3", "").from_library()
+    H, Y = known["hardness"], known["yield_strength"]
+    assert H.low < H.value < H.high
+    assert Y.low == approx(H.low / 3)
+    more = math.hypot(H.value / 2.2 - H.value / 3, (H.high - H.value) / 3)
+    assert Y.high == approx(H.value / 3 + more)
 
 
 def test_the_spread_includes_the_given_ratio():

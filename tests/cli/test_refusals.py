@@ -302,7 +302,12 @@ def test_the_other_keys_that_are_wrong_are_named(refused_case):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (("export", "x", "-o", "y", "--to", "lamps"), 'did you mean "lammps"?'),
+        (
+            ("export", "x", "-o", "y", "--to", "lamps"),
+            '"lamps" is not one of lammps, liggghts, yade, mercurydpm, edem, kratos, mujoco, '
+            "drake, lammps-adhesive, liggghts-adhesive, c, python, csv; "
+            'did you mean "lammps"?',
+        ),
         (("run", "x", "-o", "y", "--device", "gpuu"), '"gpuu" is not one of cpu, gpu, auto; did'),
         (("run", "x", "-o", "y", "--figures", "docx"), '"docx" is not one of png, svg, pdf '),
     ],

@@ -2,8 +2,12 @@
 
 import math
 
+import pytest
+
 from points import point
-from restitution.cli.run import _elastic_error, _with_error
+from restitution.case.case_file import parse_case
+from restitution.cli.run import _advice, _elastic_error, _with_error
+from restitution.errors import CaseError
 
 
 def test_the_error_of_a_model_that_does_not_yield_is_explained():
@@ -19,3 +23,36 @@ def test_unknown_errors_are_named():
     assert _with_error(0.5, 0.01, wanted=True) == "0.5000 ± 0.0100"
     assert _with_error(0.5, math.nan, wanted=True) == "0.5000 ± unknown"
     assert _with_error(0.5, math.nan, wanted=False) == "0.5000"
+
+
+CASE = """
+[first]
+radius = "50 um"
+youngs_modulus = "210 GPa"
+poissons_ratio = 0.3
+density = "7850 kg/m^3"
+[interface]
+yield_pressure = "1 GPa"
+[roughness]
+kind = "gaussian"
+rms = "60 nm"
+correlation_length = "1 um"
+seed = 1
+[grid]
+nodes = 32
+spacing = "0.3 um"
+[impact]
+velocity = ["0.1 m/s"]
+"""
+
+
+@pytest.mark.parametrize("more", ["", "[impacts]\ncoverage = 1\n"])
+def test_the_advice_of_more_surfaces_is_for_single_impacts(more):
+    """[impacts] refuses `realisations`."""
+    rough = point(surface_scatter=0.2, total_error=0.2)
+    advice = _advice(parse_case(CASE + more), [rough], {"warnings": [], "diagnostics": {}})
+    assert ("realisations = 8" in advice) is (not more)
+    with pytest.raises(CaseError, match=r"roughness\.realisations: must be 1 with \[impacts\]"):
+        parse_case(
+            CASE.replace("seed = 1", "seed = 1\nrealisations = 8") + "[impacts]\ncount = 9\n"
+        )

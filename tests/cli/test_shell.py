@@ -5,7 +5,9 @@ import re
 import pytest
 import typer
 
+from restitution.cli.parameters import ExportFormat
 from restitution.cli.verbs import program
+from restitution.dem.export import CODES
 
 COMMANDS = typer.main.get_command(program).commands
 
@@ -24,8 +26,12 @@ def test_a_shell_completes_verbs_options_and_values(cli, monkeypatch):
         "compare-theory",
     ]
     assert "--velocity" in complete(cli, monkeypatch, "restitution export --", 2)
-    codes = ["lammps", "liggghts", "lammps-adhesive", "liggghts-adhesive"]
-    assert sorted(complete(cli, monkeypatch, "restitution export --to l", 3)) == sorted(codes)
+    assert complete(cli, monkeypatch, "restitution export --to l", 3) == [
+        "lammps",
+        "liggghts",
+        "lammps-adhesive",
+        "liggghts-adhesive",
+    ]
     assert complete(cli, monkeypatch, "restitution materials st", 2) == [
         "steel",
         "stainless-steel",
@@ -66,3 +72,7 @@ def test_the_next_command_can_be_pasted(cli, case_text, tmp_path):
     case.write_text(case_text)
     said = cli("check", case)[1].splitlines()
     assert said[-1] == f"Next: restitution run '{case}' -o OUT"
+
+
+def test_every_code_of_an_export_is_a_choice():
+    assert list(ExportFormat) == list(CODES)

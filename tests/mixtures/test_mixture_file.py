@@ -129,6 +129,7 @@ def test_a_pair_may_have_an_interface_of_its_own(mixture_text):
         ('material = "steel"', 'material = "steel"\nmass_fractions = [1]', "a wall has no sizes"),
         ("[walls.drum]", "[walls.alu]", "walls.alu: is also the name of a material"),
         ("[impact]", "[impacts]", "impacts.from: unknown key"),
+        ("[impact]", "[imapct]", "imapct: unknown key"),
         ('from = "0.1 m/s"', 'from = "2 m/s"', "`from` must be smaller than `to`"),
         ('rms = "0.05 um"', 'rms = "0.05"', "materials.alu.roughness.rms"),
         ("seed = 1", 'seed = "one"', "materials.alu.roughness.seed"),

@@ -7,14 +7,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, Literal, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from restitution.case.interface import InterfaceTable, Yielding
-from restitution.case.rulebook import Input, Key
-from restitution.case.schema import GridTable
-from restitution.contact.bodies import Pair
+from restitution.case.roughness_keys import ADHESIVE_CELLS, CELLS, BelowGrid, Stamp
+from restitution.case.tables import CaseTables
 from restitution.contact.checks.resolution import predicted_radius
 from restitution.display import quantity
 from restitution.errors import CaseError
@@ -24,9 +22,7 @@ from restitution.surfaces import Surface, refine, rms_slope
 from restitution.surfaces.refine import divided
 from restitution.surfaces.split import SplitSurface, cut, long_waves
 
-BelowGrid = Literal["patch", "omit"]
-# Defaults of `split`, in cells of the grid. With adhesion, more waves make a law of longer range.
-CELLS, ADHESIVE_CELLS = 2, 4
+_LESS = 0.99  # keeps a limit valid that is printed with four digits
 # Edge of a patch divided by the longest wave in it; patches that adhere are solved more slowly.
 _EDGE, _ADHESIVE_EDGE = 8.0, 4.0
 _LEAST_EDGE = 2.0  # the least such ratio, on a scan that is too small
@@ -35,52 +31,6 @@ _MOST_NODES = 2048  # along the edge of a patch
 _BYTES = 250.0  # per node of a window
 _MOST_REFINED = 512  # nodes along the edge of a patch that is refined for its adhesion
 _REACH = 0.5  # cell divided by sqrt(r z₀) for asperities of radius r (docs/adhesion.md)
-
-BELOW_GRID = Key(
-    'what happens to waves that the grid does not carry ([two scales](two-scales.md)): `"patch"` '
-    'solves them on periodic patches, whose law the contact uses; `"omit"` leaves them out, and '
-    "the total error includes them",
-    default='`"omit"` for scans, `"patch"` for generated waves below two cells',
-    page=Input("Waves below the grid", more=True, empty="left out of scans"),
-)
-SPLIT = Key(
-    "wavelength at which the surface is split: shorter waves go into the patches; at least two "
-    "grid spacings, and below the contact radius",
-    default=f"{CELLS} grid spacings, with adhesion {ADHESIVE_CELLS}",
-)
-
-
-class SplitCase(Protocol):
-    """What of a `Case` decides how its surface is split."""
-
-    @property
-    def roughness(self) -> tuple[Any, ...]:
-        """The tables of the roughness."""
-
-    @property
-    def grid(self) -> GridTable:
-        """The table of the grid."""
-
-    @property
-    def interface(self) -> InterfaceTable:
-        """The table of the interface."""
-
-    @property
-    def periodic(self) -> bool:
-        """Whether the contact is periodic."""
-
-    @property
-    def can_split(self) -> bool:
-        """Whether the models of the case are defined with patches."""
-
-    def pair(self) -> Pair:
-        """The bodies."""
-
-    def yielding(self) -> Yielding:
-        """How they yield."""
-
-    def deepest_indentation(self) -> float:
-        """The deepest indentation (m)."""
 
 
 @dataclass(frozen=True)
@@ -99,98 +49,133 @@ class Splitting:
         return Grid((n, n), (self.cell, self.cell))
 
 
-def splitting_of(case: SplitCase, folder: Path) -> Splitting | None:
+def splitting_of(case: CaseTables, folder: Path) -> Splitting | None:
     """How the surface of `case` is split; None if it is not.
 
-    Raises `CaseError` if the case asks for a split that is impossible.
+    Raises `CaseError` if a split is needed or given, but impossible.
     """
     wanted = _wanted(case, folder)
     if wanted is None:
         return None
-    split, cell = wanted
-    radius = _contact_radius(case)
-    if split <= radius:
-        return _sized(case, folder, split, cell)
-    if _choice(case) is None and _given(case) is None:
+    deepest = case.indentation_at(case.depths()[-1])
+    radius = predicted_radius(case.pair(), deepest, case.yielding().hardness)
+    if wanted.split > radius:
+        raise CaseError(_not_separate(case, wanted, radius))
+    return _sized(case, folder, wanted)
+
+
+def notice_of(case: CaseTables, folder: Path) -> str | None:
+    """One line if the case asks for patches, but no waves are left to them."""
+    if _choice(case) != "patch" or _wanted(case, folder) is not None:
         return None
-    raise CaseError(
-        f"roughness.split: {_nm(split)} is above the contact radius of {_nm(radius)} at the "
-        "largest depth, so waves and contact do not separate; set grid.spacing or split to "
-        f'{_nm(radius / CELLS)} or less, or below_grid = "omit"'
-    )
+    return "roughness.below_grid: no waves are below the grid, so nothing is split"
 
 
-def notice_of(case: SplitCase, folder: Path) -> str | None:
-    """One line if waves below the grid are left out, or if none are left to patches."""
-    wanted = _wanted(case, folder)
-    if wanted is None:
-        if _choice(case) != "patch":
-            return None
-        return "roughness.below_grid: no waves are below the grid, so nothing is split"
-    split, radius = wanted[0], _contact_radius(case)
-    if split <= radius:
-        return None
-    return (
-        f"waves below the grid are left out, because patches of waves up to {_nm(split)} would not "
-        f"be small beside the contact radius of {_nm(radius)} at the largest depth; set "
-        f"grid.spacing to {_nm(radius / CELLS)} or less"
-    )
+class _Wanted(NamedTuple):
+    split: float  # wavelength (m)
+    least: float  # the shortest wave (m) of the grid
+    cell: float  # of the patches (m)
 
 
-def _wanted(case: SplitCase, folder: Path) -> tuple[float, float] | None:
-    """Wavelength of the split and cell of the patches (m), if waves go into patches."""
+def _wanted(case: CaseTables, folder: Path) -> _Wanted | None:
     parts, grid = case.roughness, case.grid.grid()
     choice = _choice(case)
     if grid is None or not parts or choice == "omit":
         return None
-    if not case.can_split:
+    if not _can_split(case):
         if choice is None:
             return None
         raise CaseError(
             'roughness.below_grid: "patch" is not defined with adhesion = "jkr" (or a key that '
             'needs it), plasticity = "truncated", [impacts], a periodic grid, skewness or '
-            "kurtosis; leave below_grid out"
+            "kurtosis; leave below_grid and split out"
         )
-    fine = divided(grid, case.grid.factor)
-    if choice is None and not any(part.needs_patches(grid) for part in parts):
+    added = _adds_waves(case, grid)
+    if choice is None and not added:
         return None
     # A finer grid carries more waves of a scan, but no more waves of a generated surface.
-    added = any(part.needs_patches(grid) for part in parts)
-    spacing = max(grid.spacing if added else fine.spacing)
-    cells = ADHESIVE_CELLS if case.interface.adhesive_energy else CELLS
-    split = _given(case) or max(cells * max(fine.spacing), 2 * spacing)
+    fine = divided(grid, case.grid.factor)
+    least = 2 * max(grid.spacing if added else fine.spacing)
+    split = _given(case) or max(_cells(case) * max(fine.spacing), least)
     cell = min(part.patch_cell(grid, folder) for part in parts)
     if min(part.shortest_wave(grid, folder) for part in parts) > split * (1 - 1e-9):
         return None
-    if split < 2 * spacing * (1 - 1e-9):
+    if split < least * (1 - 1e-9):
         raise CaseError(
-            f"roughness.split: {_nm(split)} is below two grid spacings ({_nm(2 * spacing)}), so "
-            "waves in between would be in neither the grid nor the patches; use a larger split or "
-            "a smaller grid.spacing"
+            f"roughness.split: {_nm(split)} is below two grid spacings ({_nm(least)}), so waves in "
+            "between would be in neither the grid nor the patches; use a larger split or a smaller "
+            "grid.spacing"
         )
-    return split, cell
+    return _Wanted(split, least, cell)
 
 
-def _choice(case: SplitCase) -> BelowGrid | None:
-    return next((part.below_grid for part in case.roughness if part.below_grid), None)
+def _adds_waves(case: CaseTables, grid: Grid) -> bool:
+    return any(part.needs_patches(grid) for part in case.roughness)
 
 
-def _given(case: SplitCase) -> float | None:
+def _cells(case: CaseTables) -> int:
+    return ADHESIVE_CELLS if case.interface.adhesive_energy else CELLS
+
+
+def _not_separate(case: CaseTables, wanted: _Wanted, radius: float) -> str:
+    """Why waves and contact do not separate, with values that do."""
+    split, most = _nm(wanted.split), _LESS * radius
+    spacing = f"set grid.spacing to {_nm(most / _cells(case))} or less"
+    without = _without_patches(case, wanted)
+    at = f"contact radius of {_nm(radius)} at the largest depth"
+    if _choice(case) is None:
+        return (
+            f"roughness.shortest: is below two grid spacings, and patches of waves up to {split} "
+            f"would not be small beside the {at}; {spacing}, or {without}"
+        )
+    if _given(case) is not None:
+        shorter = f"set split to {_nm(most)} or less"
+        spacing = shorter if wanted.least <= most else f"leave split out and {spacing}"
+    return (
+        f"roughness.split: {split} is above the {at}, so waves and contact do not separate; "
+        f"{spacing}, or {without}"
+    )
+
+
+def _without_patches(case: CaseTables, wanted: _Wanted) -> str:
+    grid = case.grid.grid()
+    if grid is not None and _adds_waves(case, grid):
+        kept = float(f"{wanted.least:.4g}") >= wanted.least * (1 - 1e-9)
+        return f"roughness.shortest to {_nm(wanted.least / (1 if kept else _LESS))} or more"
+    return 'below_grid = "omit"'
+
+
+def _can_split(case: CaseTables) -> bool:
+    """Whether the models and surfaces of the case are defined with waves below the grid."""
+    interface = case.interface
+    jkr = interface.adhesion == "jkr" or interface.needs_jkr
+    if case.impacts or case.periodic or (interface.adhesive_energy and jkr):
+        return False
+    normal = all(part.is_normal for part in case.roughness)
+    return normal and case.yielding().model.bounds_solve
+
+
+def _choice(case: CaseTables) -> BelowGrid | None:
+    given = next((part.below_grid for part in case.roughness if part.below_grid), None)
+    return given or ("patch" if _given(case) else None)
+
+
+def _given(case: CaseTables) -> float | None:
     return next((part.split for part in case.roughness if part.split), None)
 
 
-def _contact_radius(case: SplitCase) -> float:
-    return predicted_radius(case.pair(), case.deepest_indentation(), case.yielding().hardness)
-
-
-def _sized(case: SplitCase, folder: Path, split: float, cell: float) -> Splitting | None:
+def _sized(case: CaseTables, folder: Path, wanted: _Wanted) -> Splitting:
     from scipy.fft import next_fast_len
 
+    split, cell = wanted.split, wanted.cell
     room = min(part.patch_room(folder) for part in case.roughness)
-    wanted = _ADHESIVE_EDGE if case.interface.adhesive_energy else _EDGE
-    edge = min(wanted * split, room)
+    edge = min((_ADHESIVE_EDGE if case.interface.adhesive_energy else _EDGE) * split, room)
     if edge < _LEAST_EDGE * split:
-        return None
+        raise CaseError(
+            f"roughness.split: {_nm(split)} is too long for patches from a scan of {_nm(room)}; "
+            f"set split to {_nm(_LESS * room / _LEAST_EDGE)} or less, or roughness.extend = "
+            '"twin" with a seed'
+        )
     nodes = math.floor(edge / cell * (1 + 1e-9))
     if edge < room:
         nodes = next_fast_len(math.ceil(edge / cell * (1 - 1e-9)), real=True)
@@ -199,16 +184,17 @@ def _sized(case: SplitCase, folder: Path, split: float, cell: float) -> Splittin
     if nodes > _MOST_NODES or needed > memory.available():
         raise CaseError(
             f"roughness.split: patches of {nodes} x {nodes} nodes ({_nm(cell)} each, for waves "
-            f"below {_nm(split)}) are too large; use a smaller grid.spacing or split, leave out "
-            'short waves (roughness.shortest), or set below_grid = "omit"'
+            f"below {_nm(split)}) are too large; use a smaller grid.spacing or split, or set "
+            f"{_without_patches(case, wanted)}"
         )
     return Splitting(split, cell, nodes, tiles)
 
 
-def split_surface(case: SplitCase, folder: Path, surface: Surface, how: Splitting) -> SplitSurface:
+def split_surface(case: CaseTables, folder: Path, surface: Surface, how: Splitting) -> SplitSurface:
     """`surface` of `case` without short waves, and the patches that have them."""
     kin = tuple(part.of_patches() for part in case.roughness)
-    patches = _patches(kin, str(folder), case.grid.grid(), how)
+    stamps = tuple(part.stamp(folder) for part in case.roughness)
+    patches = _patches(kin, str(folder), stamps, case.grid.grid(), how)
     if case.interface.adhesive_energy:
         z0 = case.interface.equilibrium_separation
         patches = tuple(_resolved(patch, z0) for patch in patches)
@@ -226,7 +212,9 @@ def split_surface(case: SplitCase, folder: Path, surface: Surface, how: Splittin
 
 
 @lru_cache(maxsize=8)
-def _patches(parts: Sequence[Any], folder: str, grid: Grid, how: Splitting) -> tuple[Surface, ...]:
+def _patches(
+    parts: Sequence[Any], folder: str, _: tuple[Stamp, ...], grid: Grid, how: Splitting
+) -> tuple[Surface, ...]:
     heights = [part.short_waves(how.window, how.wavelength, grid, Path(folder)) for part in parts]
     return cut(np.sum(heights, axis=0), how.window.spacing, how.nodes, how.tiles)
 

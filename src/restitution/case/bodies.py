@@ -23,8 +23,11 @@ from restitution.case.quantities import (
 )
 from restitution.case.rulebook import Input, key, rules
 from restitution.case.schema import Table
-from restitution.contact.bodies import Body
-from restitution.losses.viscosity import Friction
+from restitution.contact.bodies import Body, Pair
+from restitution.losses.half_space import HalfSpace
+from restitution.losses.losses import Losses
+from restitution.losses.plate import Plate
+from restitution.losses.viscosity import Friction, Viscosity
 
 _REQUIRED = ("youngs_modulus", "poissons_ratio")  # keys that every body needs
 
@@ -170,7 +173,9 @@ class BodyTable(Table):
                 if (supplied := getattr(known, key)) and supplied.value == getattr(self, key)
             }
         if self._ratio is not None and self.hardness is not None:
-            own = strength(self.hardness, self._ratio)
+            known_hardness = values.get("hardness")
+            spread = known_hardness and (known_hardness.low, known_hardness.high)
+            own = strength(self.hardness, self._ratio, spread)
             values |= {"yield_strength": own} if own.value == self.yield_strength else {}
         return values
 
@@ -188,3 +193,27 @@ FROM_LIBRARY = {
     for rule in rules(BodyTable)
     if rule.name in Material.model_fields
 }
+
+
+def losses_of(pair: Pair, *tables: BodyTable) -> Losses:
+    """Losses of `pair`, whose bodies are `tables`: none of two flat ones, which have no impact.
+
+    A wall without density has no waves.
+    """
+    if pair.flat:
+        return Losses()
+    wall = next((table for table in tables if table.radius is None), None)
+    plate = waves = None
+    if wall is not None and wall.density is not None:
+        material = wall.youngs_modulus, wall.poissons_ratio, wall.density
+        waves = HalfSpace(*material)
+        plate = None if wall.thickness is None else Plate(wall.thickness, *material)
+    bodies = tuple(
+        (
+            table.friction,
+            pair.contact_modulus * (1 - table.poissons_ratio**2) / table.youngs_modulus,
+        )
+        for table in tables
+    )
+    viscous = any(friction != Friction() for friction, _ in bodies)
+    return Losses(plate, waves, Viscosity(bodies) if viscous else None)

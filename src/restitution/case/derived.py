@@ -12,7 +12,7 @@ from restitution.theory import JKR, FirstYield
 
 def deepest_indentation(case: Case) -> float:
     """The deepest indentation (m), by `Case.indentation_at`."""
-    return case.deepest_indentation()
+    return case.indentation_at(case.depths()[-1])
 
 
 def derived_quantities(case: Case, contact: Contact) -> dict[str, float | None]:

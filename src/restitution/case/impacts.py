@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Sequence
 from typing import Annotated, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
@@ -10,11 +11,17 @@ from pydantic import BeforeValidator, Field, model_validator
 from restitution.case.quantities import Velocity
 from restitution.case.rulebook import key
 from restitution.case.schema import Table
-from restitution.repeated.run_in import Place
+from restitution.contact.bodies import Pair
+from restitution.display import quantity
+from restitution.errors import CaseError
+from restitution.numerics.grid import Grid
+from restitution.repeated.run_in import Place, nominal_area
 from restitution.repeated.velocities import drawn, in_turn, rayleigh
 
 MOST_IMPACTS = 100_000
 MOST_PLACES = 10_000
+# Smallest width of a grid with [impacts], in diameters of the contact of smooth bodies.
+_WIDEST = 1.6
 
 _Listed = BeforeValidator(lambda value: value if isinstance(value, list) else [value])
 Coverage = Annotated[float, Field(gt=0)]
@@ -111,3 +118,49 @@ class ImpactsTable(Table):
         if self.weights is not None:
             return drawn(listed, self.weights, seed)
         return in_turn(listed)
+
+    def require_possible(
+        self, grid: Grid, velocities: Sequence[float], pair: Pair, hardness: float
+    ) -> None:
+        """Raise `CaseError` if a contact is as large as `grid`, or a coverage is not possible.
+
+        Args:
+            grid: The grid of the surfaces.
+            velocities: Those of [impact] (m/s).
+            pair: The bodies.
+            hardness: Pressure of a fully plastic contact (Pa).
+        """
+        for V in velocities:
+            run_in = self.velocity or [V]
+            areas = [nominal_area(pair, hardness, v) for v in (V, *run_in)]
+            _require_wide(grid, max(areas), max(V, *run_in))
+            if self.coverage is not None:
+                one = sum(areas[1:]) / len(run_in) / math.prod(grid.size)
+                _require_count(min(self.coverage), max(self.coverage), one, V)
+
+
+def _require_count(least: float, most: float, one: float, velocity: float) -> None:
+    """Raise `CaseError` for coverages that take no impact of coverage `one`, or too many."""
+    if round(least / one) < 1:
+        raise CaseError(
+            f"impacts.coverage: {least:g} is less than one contact at {velocity:.4g} m/s, which "
+            f"covers {one:.3g} of the surface; give at least {1.01 * one:.2g}, or a larger grid"
+        )
+    if (count := round(most / one)) > MOST_IMPACTS:
+        raise CaseError(
+            f"impacts.coverage: {most:g} takes {count} impacts at {velocity:.4g} m/s, more than "
+            f"{MOST_IMPACTS}; give less coverage, a smaller grid, or higher velocities"
+        )
+
+
+def _require_wide(grid: Grid, area: float, velocity: float) -> None:
+    """Raise `CaseError` if a contact of this area (m²) covers most of `grid`."""
+    wide = _WIDEST * 2 * math.sqrt(area / math.pi)
+    if wide <= min(grid.size):
+        return
+    nodes = math.ceil(wide / min(grid.spacing))
+    raise CaseError(
+        f"grid.nodes: the grid of {quantity(min(grid.size), 'm')} is too small for [impacts] at "
+        f"{velocity:.4g} m/s, where the contact is {quantity(wide / _WIDEST, 'm')} wide; give at "
+        f"least {nodes} nodes, or lower velocities"
+    )

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from restitution.case.case import Case
+from restitution.case.generated import GeneratedRoughness
 from restitution.case.materials import adhesive
-from restitution.case.roughness import GeneratedRoughness
 from restitution.theory import JKR, Hertz
 
 # Typical work of adhesion (J/m²). Ghanbarzadeh et al. (2019) state a range of 0.01 to 0.09 J/m².

@@ -60,13 +60,13 @@ def check(case: Path) -> None:
     print_numbers(table)
     if information := default_yield(read.yielding().source):
         say(information)
-    if not read.periodic and (information := loss_information(read)):
+    if information := loss_information(read):
         say(information)
     deepest = deepest_indentation(read)
     require_possible(contact, deepest)
     with errors.status("checking the surface"):
         warnings += input_warnings(contact, deepest, read.prescribed)
-        warnings += [] if read.periodic else loss_warnings(read)
+        warnings += loss_warnings(read)
         if read.interface.adhesion is None and contact.adhesive:
             warnings += no_range(contact)
         if (notice := notice_of(read, case.parent)) is not None:

@@ -125,21 +125,8 @@ class FigureFormat(StrEnum):
 # DEM codes and formats to which laws can be exported.
 ExportFormat = StrEnum(
     "ExportFormat",
-    [
-        ("lammps", "lammps"),
-        ("liggghts", "liggghts"),
-        ("yade", "yade"),
-        ("mercurydpm", "mercurydpm"),
-        ("edem", "edem"),
-        ("kratos", "kratos"),
-        ("mujoco", "mujoco"),
-        ("drake", "drake"),
-        ("lammps_adhesive", "lammps-adhesive"),
-        ("liggghts_adhesive", "liggghts-adhesive"),
-        ("c", "c"),
-        ("python", "python"),
-        ("csv", "csv"),
-    ],
+    "lammps liggghts yade mercurydpm edem kratos mujoco drake lammps-adhesive liggghts-adhesive "
+    "c python csv",
 )
 
 CaseFile = Annotated[Path, given("CASE", "Case file (TOML).")]

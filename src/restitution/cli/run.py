@@ -95,7 +95,7 @@ def _run(
         folder = ResultsFolder(out)
         say(f"Results go to {out}", errors)
         with naming(case):
-            losses = "" if read.periodic else loss_information(read)
+            losses = loss_information(read)
         for information in filter(None, (default_yield(read.yielding().source), losses)):
             say(information, errors)
         hint_at_kernels()

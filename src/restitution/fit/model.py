@@ -17,10 +17,11 @@ import numpy as np
 import tomli_w
 from numpy.typing import NDArray
 
-from restitution.case.case import DEPTHS, Case
+from restitution.case.case import Case
 from restitution.case.case_file import parse_case
 from restitution.case.derived import deepest_indentation
 from restitution.case.schema import UnloadingTable
+from restitution.case.tables import DEPTHS
 from restitution.collision import collide
 from restitution.contact.contact import Contact
 from restitution.contact.loading import solve

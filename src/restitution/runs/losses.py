@@ -39,7 +39,7 @@ def unloading_of(impact: Impact) -> UnloadingCurve | None:
 def loss_information(case: Case) -> str:
     """What the pair loses beside yielding and adhesion, in words; "" for nothing."""
     losses, pair = case.losses(), case.pair()
-    if pair.mass is None:
+    if pair.mass is None or pair.flat:
         return ""
     said = []
     if plate := losses.plate:

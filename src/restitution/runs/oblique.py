@@ -42,7 +42,7 @@ def oblique_points(
     """
     impact, friction = case.impact, case.interface.friction
     assert impact is not None  # the case is oblique
-    assert friction is not None  # checked by Case._check_oblique
+    assert friction is not None  # checked with the tables of the case
     try:
         law = _force(case, surface, out)
     except (CaseError, OutputError, ValueError) as error:

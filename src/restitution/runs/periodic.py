@@ -11,7 +11,7 @@ from typing import Any
 
 from restitution.case.case import Case
 from restitution.case.derived import deepest_indentation, derived_quantities
-from restitution.case.roughness import MeasuredRoughness
+from restitution.case.measured import MeasuredRoughness
 from restitution.contact.interface import interface_of
 from restitution.contact.prescribed.stiffness import normal_stiffness
 from restitution.contact.state import State

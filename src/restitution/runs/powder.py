@@ -11,7 +11,7 @@ from typing import Any
 from restitution.case.case import Case
 from restitution.case.case_file import parse_case
 from restitution.case.derived import deepest_indentation
-from restitution.case.roughness import GeneratedRoughness
+from restitution.case.generated import GeneratedRoughness
 from restitution.contact.checks.edge import MARGIN, largest_reach
 from restitution.contact.checks.resolution import adhesive_spacing, divisions
 from restitution.contact.contact import Contact

@@ -60,7 +60,7 @@ def run_in(
     `contact` is the contact of the new bodies. Raises `CaseError` if a surface does not repeat.
     """
     table = _table(case)
-    case.impact_counts(contact.grid)
+    table.require_possible(contact.grid, _velocities(case), contact.pair, contact.hardness)
     bodies = _bodies(case, folder)
     own = list(_sequences(case, contact, bodies, table.seed, progress, "run-in"))
     points = [point for one in own for point in one.points]
