@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from restitution.errors import CaseError
-from restitution.impacts.time_integration import loading_force
+from restitution.impacts.stored_force import loading_force
 from restitution.laws.law import Array, Law
 
 _BETWEEN = 6  # nodes of the loading curve in the interval of two points

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.curve.columns import Array
-from restitution.impacts.time_integration import StoredForce
+from restitution.impacts.stored_force import StoredForce
 from restitution.losses.losses import NAMES, Damping, Losses
 
 _NODES = 65  # of the tables of forces

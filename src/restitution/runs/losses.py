@@ -17,7 +17,7 @@ from restitution.curve.follow import Impact
 from restitution.curve.point import Point
 from restitution.display import quantity
 from restitution.impacts.losses import LossFactors, loss_factors
-from restitution.impacts.time_integration import force_of_columns
+from restitution.impacts.stored_force import force_of_columns
 from restitution.losses.losses import Losses
 from restitution.theory import Hertz
 
