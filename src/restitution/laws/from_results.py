@@ -185,6 +185,7 @@ def _points(run: RunResults) -> list[LawPoint]:
                 resolved=impact.resolved,
                 quasi_static=impact.restitution,
                 factors=_factors(impact),
+                loss_error=_known(impact.loss_error),
             )
         )
     return points

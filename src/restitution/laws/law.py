@@ -36,7 +36,8 @@ class LawPoint:
     `ratio` is W_u/W_l, unloading work over loading work; zero or negative if the pair sticks.
     `error` is that of `restitution`; `indentation` and `force` are the maxima of the impact, and
     `separation` the indentation at which the bodies separate. `restitution` is `quasi_static` times
-    `factors`, those of the losses (`losses.NAMES`); laws of older versions have no factors.
+    `factors`, those of the losses (`losses.NAMES`), and `loss_error` is the part of `error` due to
+    this product; laws of older versions have neither.
     `deviation` and `quantiles` (5, 25, 50, 75 and 95 %) are those of COR over places of the
     surfaces; None if it was not measured at several.
     """
@@ -54,6 +55,7 @@ class LawPoint:
     resolved: bool
     quasi_static: Share | None = None
     factors: dict[str, Share] = field(default_factory=dict)
+    loss_error: NotNegative | None = None
     deviation: NotNegative | None = None
     quantiles: Quantiles | None = None
 
