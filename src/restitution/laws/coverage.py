@@ -27,9 +27,7 @@ def covered_points(points: Sequence[RunInPoint]) -> tuple[CoveredPoint, ...]:
             if math.isfinite(point.total_error)
             else math.hypot(point.places_error, point.solver_error),
             deviation=point.restitution_std,
-            quantiles=cast(
-                Quantiles, tuple(getattr(point, f"restitution_{q}") for q in QUANTILES)
-            ),
+            quantiles=cast(Quantiles, tuple(getattr(point, f"restitution_{q}") for q in QUANTILES)),
             indentation=point.indentation,
             force=point.force,
             pull_off_force=point.pull_off_force,
