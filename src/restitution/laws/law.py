@@ -16,6 +16,7 @@ from restitution.curve.interpolation import RatioCurve, root
 from restitution.display import counted, quantity, summary_html, summary_text, with_error
 from restitution.errors import CaseError, DomainError
 from restitution.laws.particle import STRICT, NotNegative, Particle, Positive, Share
+from restitution.losses.losses import NAMES
 
 Array = NDArray[np.float64]
 Quantiles = tuple[Share, Share, Share, Share, Share]
@@ -280,8 +281,9 @@ class Law:
     @property
     def losses(self) -> tuple[str, ...]:
         """Names of the losses that lower the restitution at any velocity."""
-        known = (name for point in self.points for name, of in point.factors.items() if of < 1)
-        return tuple(dict.fromkeys(known))
+        return tuple(
+            name for name in NAMES if any(point.factors.get(name, 1.0) < 1 for point in self.points)
+        )
 
     def curve(self) -> RatioCurve:
         """W_u/W_l, interpolated between the velocities."""

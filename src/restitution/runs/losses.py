@@ -129,8 +129,7 @@ def with_losses(
 
 
 def _filled(point: Point, factors: Mapping[str, float]) -> Point:
-    product = factors["plate_factor"] * factors["waves_factor"] * factors["viscosity_factor"]
-    product = 1.0 if math.isnan(product) else product  # the bodies stick
+    product = 1.0 if math.isnan(factors["product"]) else factors["product"]  # the bodies stick
     error = point.restitution * abs(product - factors["together"])
     return replace(
         point,
