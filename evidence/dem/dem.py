@@ -115,10 +115,10 @@ def coverage(text: str, place: Path) -> None:
     print()
 
 
-def rebound(code: str, folder: Path) -> float:
+def rebound(code: str, folder: Path, *arguments: str) -> float:
     """The rebound ratio that a DEM code prints for the collision in `folder`; NaN if missing."""
     environment = dict(os.environ) if code == "lammps" else CLEAN
-    command = COMMANDS[code]
+    command = [*COMMANDS[code], *arguments]
     if shutil.which(command[0], path=environment["PATH"]) is None:
         return float("nan")
     done = subprocess.run(
