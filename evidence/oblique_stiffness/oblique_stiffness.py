@@ -17,7 +17,7 @@ from evidence.oblique import oblique_codes as codes
 from evidence.shared import write_table
 from restitution import Body, Pair
 from restitution.impacts.oblique import ObliqueCollision, collide_obliquely
-from restitution.impacts.time_integration import StoredForce
+from restitution.impacts.stored_force import StoredForce
 from restitution.theory import ThorntonNing
 
 E, VELOCITY, FRICTION, RADIUS, DENSITY = 100e9, 3.9, 0.3, 2.5e-3, 4000.0

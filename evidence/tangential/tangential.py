@@ -31,8 +31,9 @@ from restitution.contact.state import State
 from restitution.contact.tangential import TangentialState, shear
 from restitution.errors import DomainError
 from restitution.impacts.foundation import Foundation
+from restitution.impacts.stored_force import StoredForce, stored_force
 from restitution.impacts.tangential_error import TangentialError, tangential_error
-from restitution.impacts.time_integration import StoredForce, collide_in_time, stored_force
+from restitution.impacts.time_integration import collide_in_time
 
 FRICTION = 0.3
 # Displacements over the displacement at which a smooth sphere slides, 3/2 of µN/stiffness.

@@ -15,7 +15,7 @@ from restitution.errors import CaseError, OutputError, not_one_of
 if TYPE_CHECKING:
     from restitution.case.case import Case
     from restitution.impacts.oblique import ObliqueCollision
-    from restitution.impacts.time_integration import StoredForce
+    from restitution.impacts.stored_force import StoredForce
     from restitution.laws.law import Law
     from restitution.results.periodic import PeriodicResults
     from restitution.results.reader import RunResults, StudyResults
@@ -172,7 +172,7 @@ def collide_obliquely(
 
     Args:
         results: Results of a run of one surface, their folder, or a force law
-            (`restitution.impacts.time_integration.StoredForce`).
+            (`restitution.impacts.stored_force.StoredForce`).
         velocity: Relative velocity of the centres, such as "0.5 m/s", or a number (m/s).
         angle: Angle of impact from the normal, such as "30 deg", or a number (rad). It must be at
             least 0 and less than 90 degrees.
@@ -194,7 +194,7 @@ def collide_obliquely(
     from restitution.case.quantities import read_impact_angle, read_quantity
     from restitution.impacts.oblique import collide_obliquely as collide
     from restitution.impacts.oblique import oblique_force
-    from restitution.impacts.time_integration import StoredForce
+    from restitution.impacts.stored_force import StoredForce
     from restitution.laws.law import velocity_of
     from restitution.results.reader import RunResults, read_run
 

@@ -93,3 +93,13 @@ def test_a_law_that_yields_is_fitted_with_its_misfit_stated(sticky):
             next(iter(write(pair_table([replace(sticky, points=points)]), 0.3).values()))
         )
         assert 0.05 < worst < 0.6
+
+
+@pytest.mark.parametrize("code", WRITERS)
+def test_a_law_that_sticks_at_every_velocity_is_said_to_stick(sticky, code):
+    points = sticky.points[:2]
+    assert all(point.ratio <= 0 for point in points)
+    law = replace(sticky, points=points, sticks_below=None)
+    (text, *_) = WRITERS[code](pair_table([law]), law.highest).values()
+    said = " ".join(text.replace("#", " ").split())
+    assert f"the law sticks up to {law.highest:.3g} m/s at least" in said

@@ -11,7 +11,8 @@ from scipy.optimize import brentq
 from elastic_force import elastic
 from restitution.contact.bodies import Body, Pair
 from restitution.impacts.losses import loss_factors
-from restitution.impacts.time_integration import StoredForce, collide_in_time
+from restitution.impacts.stored_force import StoredForce
+from restitution.impacts.time_integration import collide_in_time
 from restitution.losses.half_space import HalfSpace
 from restitution.losses.losses import NAMES, Losses
 from restitution.losses.plate import Plate

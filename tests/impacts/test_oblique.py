@@ -14,7 +14,7 @@ from restitution.cli import console
 from restitution.errors import CaseError, DomainError
 from restitution.impacts.foundation import Foundation
 from restitution.impacts.oblique import collide_obliquely, course
-from restitution.impacts.time_integration import stored_force
+from restitution.impacts.stored_force import stored_force
 from restitution.theory import Hertz
 from tolerance import approx
 

@@ -9,8 +9,8 @@ import pytest
 
 from restitution import Body, Pair
 from restitution.impacts.foundation import has_yielded
+from restitution.impacts.stored_force import StoredForce, StoredRoughness
 from restitution.impacts.tangential_error import dundurs, tangential_error
-from restitution.impacts.time_integration import StoredForce, StoredRoughness
 from tolerance import approx
 
 STUDIES = Path(__file__).parents[2] / "evidence"

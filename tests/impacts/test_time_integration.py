@@ -12,8 +12,8 @@ from restitution.case.case_file import parse_case
 from restitution.cli import console
 from restitution.contact.bodies import Body, Pair
 from restitution.errors import CaseError, DomainError, NotConvergedError, OutputError
-from restitution.impacts import time_integration
-from restitution.impacts.time_integration import StoredForce, collide_in_time, course, stored_force
+from restitution.impacts.stored_force import StoredForce, loading_force, stored_force
+from restitution.impacts.time_integration import collide_in_time, course
 from restitution.laws.from_results import bare_law
 from restitution.results.writer import ResultsFolder
 from restitution.runs.ensemble import run_realisations
@@ -148,7 +148,7 @@ def test_bodies_that_never_part_have_no_restitution():
 def test_with_adhesion_the_force_is_linear_up_to_the_first_depth():
     """It does the stored work there, although it pulls at first."""
     depth, force, work = np.array([2e-8, 5e-8]), np.array([1e-3, 6e-3]), np.array([-4e-11, 5e-11])
-    pushing = time_integration.loading_force(depth, force, work)
+    pushing = loading_force(depth, force, work)
     x = np.linspace(0, depth[0], 5)
     F = [pushing(float(each)) for each in x]
     assert approx(np.linspace(F[0], force[0], 5)) == F

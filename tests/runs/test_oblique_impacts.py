@@ -9,7 +9,7 @@ import pytest
 from restitution.case.case_file import parse_case
 from restitution.errors import OutputError
 from restitution.impacts.oblique import collide_obliquely, full_slip_angle, full_slip_restitution
-from restitution.impacts.time_integration import stored_force
+from restitution.impacts.stored_force import stored_force
 from restitution.results.reader import read_run
 from restitution.results.schema import OBLIQUE_COLUMNS
 from restitution.results.writer import ResultsFolder

@@ -8,7 +8,8 @@ from restitution.cli.console import answers, print_numbers, say, say_written, ta
 from restitution.display import counted
 from restitution.errors import CaseError, DomainError
 from restitution.impacts import oblique
-from restitution.impacts.time_integration import collide_in_time, course, stored_force
+from restitution.impacts.stored_force import stored_force
+from restitution.impacts.time_integration import collide_in_time, course
 from restitution.laws.from_results import bare_law
 from restitution.laws.law import velocity_of
 from restitution.results.reader import RunResults, read_run

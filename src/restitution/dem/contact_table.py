@@ -7,8 +7,9 @@ from itertools import pairwise
 
 import numpy as np
 
+from restitution.dem.pair import unknown_pull_off
 from restitution.errors import CaseError
-from restitution.impacts.time_integration import loading_force
+from restitution.impacts.stored_force import loading_force
 from restitution.laws.law import Array, Law
 
 _BETWEEN = 6  # nodes of the loading curve in the interval of two points
@@ -87,10 +88,7 @@ def _ends(law: Law) -> tuple[Array, Array]:
         stored = law.column("pull_off_force")
         known = np.isfinite(stored)
         if not known.any():
-            raise CaseError(
-                f"{law.pair}: its pull-off force is not known; run the case with "
-                'unloading.method = "path"'
-            )
+            raise unknown_pull_off(law)
         pull = np.interp(np.log(V), np.log(V[known]), stored[known])
     energy = law.column("loading_work") * [_ratio(law, v) for v in V.tolist()]
     share = law.column("separation") / depth

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from restitution.dem.pair import contact_time, pull_off_force
+from restitution.dem.pair import contact_time, pull_off_force, unknown_pull_off
 from restitution.errors import CaseError
 from restitution.laws.law import Array, Law
-from restitution.theory import JKR
+from restitution.theory import JKR, Hertz
 
 _NODES = 3000  # of the tables of force and damping
 _STEPS = 80  # time steps in the shorter of the elastic and the adhesive contact time
@@ -104,31 +104,36 @@ def dmt_model(law: Law, force: float, *, viscoelastic: bool) -> DampedAdhesion:
 
     Without damping it loses no energy. The damping is as in `jkr_model`.
     """
-    stiffness = 4 / 3 * law.contact_modulus * math.sqrt(law.radius)
+    hertz = Hertz(law.radius, law.contact_modulus)
     deepest = float(law.column("indentation").max())
-    top = 3 * max(deepest, (force / stiffness) ** (2 / 3))
+    top = 3 * max(deepest, float(hertz.indentation(force)))
     depth = top * np.linspace(0, 1, _NODES) ** 2
     damping = np.sqrt(law.radius * depth) * law.mass if viscoelastic else np.ones_like(depth)
     scale = float(np.interp(deepest, depth, damping))
-    return DampedAdhesion(depth, stiffness * depth**1.5 - force, damping, _critical(law) / scale)
+    return DampedAdhesion(depth, hertz.force(depth) - force, damping, _critical(law) / scale)
 
 
-def area_model(law: Law, force: float) -> DampedAdhesion:
+def area_slope(law: Law, force: float) -> float:
+    """c (N/m) for which the least force of F = K δ^{3/2} − c δ (K of Hertz) is −`force` (N)."""
+    stiffness = 4 / 3 * law.contact_modulus * math.sqrt(law.radius)
+    return float((6.75 * force * stiffness**2) ** (1 / 3))
+
+
+def area_model(law: Law, force: float, lowest: float) -> DampedAdhesion:
     """LIGGGHTS' `hertz` with `sjkr`, F = K δ^{3/2} − c δ, with the pull-off force `force` (N).
 
     The damping is 2 (5/6)^½ (2E*m*)^½ (R*δ)^¼ times the strength −ln e/(ln² e + π²)^½ of the
-    coefficient of restitution e that is given to LIGGGHTS.
+    coefficient of restitution e that is given to LIGGGHTS, `lowest` at least.
     """
-    stiffness = 4 / 3 * law.contact_modulus * math.sqrt(law.radius)
-    c = (6.75 * force * stiffness**2) ** (1 / 3)
-    top = 3 * max(float(law.column("indentation").max()), (c / stiffness) ** 2)
+    c = area_slope(law, force)
+    top = 3 * max(float(law.column("indentation").max()), 6.75 * force / c)
     depth = top * np.linspace(0, 1, _NODES) ** 2
     scale = 2 * math.sqrt(5 / 6 * 2 * law.contact_modulus * law.mass)
     return DampedAdhesion(
         depth,
-        stiffness * depth**1.5 - c * depth,
+        Hertz(law.radius, law.contact_modulus).force(depth) - c * depth,
         scale * (law.radius * depth) ** 0.25,
-        float(-np.log(0.0501) / np.hypot(np.log(0.0501), np.pi)),
+        -math.log(lowest) / math.hypot(math.log(lowest), math.pi),
     )
 
 
@@ -183,7 +188,7 @@ def _sticks_below(restitution: Callable[[Array, Array], Array], law: Law, force:
 
 def _adhesive_time(law: Law, force: float) -> float:
     """Half a period (s) on the stiffness at the indentation at which Hertz's force is `force`."""
-    depth = (0.75 * force / (law.contact_modulus * math.sqrt(law.radius))) ** (2 / 3)
+    depth = float(Hertz(law.radius, law.contact_modulus).indentation(force))
     stiffness = 2 * law.contact_modulus * math.sqrt(law.radius * depth)
     return math.pi * math.sqrt(law.mass / stiffness)
 
@@ -198,10 +203,7 @@ def known_pull_off(law: Law, velocity: float) -> float:
     """The pull-off force (N) of `law` after an impact at `velocity` (m/s). Raises `CaseError`."""
     force = pull_off_force(law, velocity)
     if not force > 0:
-        raise CaseError(
-            f"{law.pair}: its pull-off force is not known; run the case with "
-            'unloading.method = "path"'
-        )
+        raise unknown_pull_off(law)
     return force
 
 
@@ -215,9 +217,12 @@ def require_adhesion(laws: Iterable[Law], code: str) -> None:
 
 def misfit(fit: AdhesiveFit, law: Law) -> str:
     """How far the fit of `law` is off, in one sentence."""
-    known = (
-        "never sticks" if law.sticks_below is None else f"sticks below {law.sticks_below:.3g} m/s"
-    )
+    if law.sticks_everywhere:
+        known = f"sticks up to {law.highest:.3g} m/s at least"
+    elif law.sticks_below is None:
+        known = f"never sticks from {law.lowest:.3g} m/s on"
+    else:
+        known = f"sticks below {law.sticks_below:.3g} m/s"
     return (
         f"pull-off force {fit.pull_off_force:.4g} N as computed; sticks below "
         f"{fit.sticks_below:.3g} m/s (the law {known}); above, e is off by up to {fit.worst:.2g} "

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from restitution.errors import CaseError
 from restitution.laws.law import FittedLaw, Law
 from restitution.laws.particle import Particle
 
@@ -91,3 +92,10 @@ def pull_off_force(law: Law, velocity: float) -> float:
     """Pull-off force (N) after an impact at `velocity` (m/s), linear in ln V; NaN if unknown."""
     V, forces = law.column("velocity"), law.column("pull_off_force")
     return float(np.interp(math.log(velocity), np.log(V), forces))
+
+
+def unknown_pull_off(law: Law) -> CaseError:
+    """The error of an export that needs the pull-off force of `law`."""
+    return CaseError(
+        f'{law.pair}: its pull-off force is not known; run the case with unloading.method = "path"'
+    )

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.impacts.time_integration import StoredForce
+from restitution.impacts.stored_force import StoredForce
 
 Array = NDArray[np.float64]
 

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.curve.columns import Array
-from restitution.impacts.time_integration import StoredForce
+from restitution.impacts.stored_force import StoredForce
 from restitution.losses.losses import NAMES, Damping, Losses
 
 _NODES = 65  # of the tables of forces
@@ -51,9 +51,10 @@ class LossFactors:
         return np.asarray(np.prod(list(self.alone.values()), axis=0))
 
     def columns(self) -> dict[str, Array]:
-        """The factors by the names of the columns of a curve, and `together`."""
+        """The factors by the names of the columns of a curve, `product` and `together`."""
         return {f"{name}_factor": of for name, of in self.alone.items()} | {
-            "together": self.together
+            "product": self.product,
+            "together": self.together,
         }
 
 

@@ -21,14 +21,9 @@ from restitution.curve.columns import Array
 from restitution.display import quantity, summary_html, summary_text
 from restitution.errors import CaseError
 from restitution.impacts.foundation import Foundation
+from restitution.impacts.stored_force import StoredForce, stored_force
 from restitution.impacts.tangential_error import tangential_error
-from restitution.impacts.time_integration import (
-    ReferenceCollision,
-    StoredForce,
-    collide_in_time,
-    stored_force,
-    table_rows,
-)
+from restitution.impacts.time_integration import ReferenceCollision, collide_in_time, table_rows
 from restitution.losses.losses import Losses
 from restitution.results.reader import RunResults
 

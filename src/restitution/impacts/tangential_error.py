@@ -16,7 +16,7 @@ import numpy as np
 
 from restitution.contact.bodies import Pair
 from restitution.impacts.foundation import has_yielded
-from restitution.impacts.time_integration import StoredForce
+from restitution.impacts.stored_force import StoredForce
 
 # With these constants, the error estimate is at least as large as every difference that was found
 # in the comparison with boundary elements. The top of this file defines χ and β.

@@ -10,7 +10,7 @@ from typing import cast
 import numpy as np
 
 from restitution.errors import CaseError, DomainError
-from restitution.laws.law import CoveredPoint, Law, LawPoint, Quantiles
+from restitution.laws.law import QUANTILES, CoveredPoint, Law, LawPoint, Quantiles
 from restitution.repeated.points import RunInPoint
 
 _SAME = 0.02  # coverages whose difference is below this share of the largest one count as equal
@@ -27,13 +27,7 @@ def covered_points(points: Sequence[RunInPoint]) -> tuple[CoveredPoint, ...]:
             if math.isfinite(point.total_error)
             else math.hypot(point.places_error, point.solver_error),
             deviation=point.restitution_std,
-            quantiles=(
-                point.restitution_5,
-                point.restitution_25,
-                point.restitution_50,
-                point.restitution_75,
-                point.restitution_95,
-            ),
+            quantiles=cast(Quantiles, tuple(getattr(point, f"restitution_{q}") for q in QUANTILES)),
             indentation=point.indentation,
             force=point.force,
             pull_off_force=point.pull_off_force,
@@ -69,16 +63,16 @@ def at_coverage(law: Law, coverage: float) -> Law:
     points = [_point(law, point, coverage) for point in law.points if _of(law, point.velocity)]
     if not points:
         raise CaseError(f"coverage: {law.pair} has no velocity with repeated impacts; run it again")
-    return replace(
+    covered = replace(
         law,
         points=tuple(points),
         coverage=coverage,
         run_in=(),
-        sticks_below=None,
         sticks_below_error=None,
         fit=None,
         laws=(),
     )
+    return replace(covered, sticks_below=covered.curve().begins())
 
 
 def _of(law: Law, velocity: float) -> list[CoveredPoint]:
@@ -105,6 +99,7 @@ def _point(law: Law, point: LawPoint, coverage: float) -> LawPoint:
     e = at("restitution")
     # The other losses of an impact hardly depend on the roughness.
     share = math.prod(point.factors.values())
+    error = share * max(one.error for one in around) + (point.loss_error or 0.0)
     table = share * np.array([one.quantiles for one in known]).T
     quantiles = tuple(float(np.interp(coverage, C, values)) for values in table)
     return replace(
@@ -112,11 +107,12 @@ def _point(law: Law, point: LawPoint, coverage: float) -> LawPoint:
         restitution=share * e,
         quasi_static=e if point.factors else None,
         ratio=(share * e) ** 2,
-        error=max(one.error for one in around),
+        error=min(error, max(share * e, 1 - share * e)),
         indentation=at("indentation"),
         force=at("force"),
         pull_off_force=at("pull_off_force"),
         pull_off_error=None,
+        separation=None,
         deviation=share * at("deviation"),
         quantiles=cast(Quantiles, quantiles),
     )

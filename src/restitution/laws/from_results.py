@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -100,7 +100,7 @@ def _law(out: Path, run: RunResults) -> Law:
         friction=case.interface.friction,
         model={key: str(value) for key, value in model.items()},
         conventions=Conventions(
-            **_conventions(summary["conventions"], points),
+            **summary["conventions"],
             restitution_error=_error_includes(summary["diagnostics"], wanted=case.total_error),
         ),
         yield_velocity=derived["yield_velocity_m_per_s"],
@@ -120,16 +120,18 @@ def _law(out: Path, run: RunResults) -> Law:
     sticking = summary.get("sticking", {})
     return replace(
         law,
+        conventions=_with_losses(law),
         sticks_below=law.curve().begins() or sticking.get("sticks_below_m_per_s") or None,
         sticks_below_error=sticking.get("sticks_below_error_m_per_s"),
         warnings=tuple(warnings),
     )
 
 
-def _conventions(stored: Mapping[str, str], points: Sequence[LawPoint]) -> dict[str, str]:
-    lost = [name for name in NAMES if any(point.factors.get(name, 1.0) < 1 for point in points)]
-    more = f", times the factors of {', '.join(lost)}" if lost else ""
-    return {**stored, "restitution": stored["restitution"] + more}
+def _with_losses(law: Law) -> Conventions:
+    if not law.losses:
+        return law.conventions
+    more = f", times the factors of {', '.join(law.losses)}"
+    return replace(law.conventions, restitution=law.conventions.restitution + more)
 
 
 def _read(out: Path) -> RunResults:
@@ -185,6 +187,7 @@ def _points(run: RunResults) -> list[LawPoint]:
                 resolved=impact.resolved,
                 quasi_static=impact.restitution,
                 factors=_factors(impact),
+                loss_error=_known(impact.loss_error),
             )
         )
     return points

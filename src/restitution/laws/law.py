@@ -16,6 +16,7 @@ from restitution.curve.interpolation import RatioCurve, root
 from restitution.display import counted, quantity, summary_html, summary_text, with_error
 from restitution.errors import CaseError, DomainError
 from restitution.laws.particle import STRICT, NotNegative, Particle, Positive, Share
+from restitution.losses.losses import NAMES
 
 Array = NDArray[np.float64]
 Quantiles = tuple[Share, Share, Share, Share, Share]
@@ -36,7 +37,8 @@ class LawPoint:
     `ratio` is W_u/W_l, unloading work over loading work; zero or negative if the pair sticks.
     `error` is that of `restitution`; `indentation` and `force` are the maxima of the impact, and
     `separation` the indentation at which the bodies separate. `restitution` is `quasi_static` times
-    `factors`, those of the losses (`losses.NAMES`); laws of older versions have no factors.
+    `factors`, those of the losses (`losses.NAMES`), and `loss_error` is the part of `error` due to
+    this product; laws of older versions have neither.
     `deviation` and `quantiles` (5, 25, 50, 75 and 95 %) are those of COR over places of the
     surfaces; None if it was not measured at several.
     """
@@ -54,6 +56,7 @@ class LawPoint:
     resolved: bool
     quasi_static: Share | None = None
     factors: dict[str, Share] = field(default_factory=dict)
+    loss_error: NotNegative | None = None
     deviation: NotNegative | None = None
     quantiles: Quantiles | None = None
 
@@ -278,8 +281,9 @@ class Law:
     @property
     def losses(self) -> tuple[str, ...]:
         """Names of the losses that lower the restitution at any velocity."""
-        known = (name for point in self.points for name, of in point.factors.items() if of < 1)
-        return tuple(dict.fromkeys(known))
+        return tuple(
+            name for name in NAMES if any(point.factors.get(name, 1.0) < 1 for point in self.points)
+        )
 
     def curve(self) -> RatioCurve:
         """W_u/W_l, interpolated between the velocities."""

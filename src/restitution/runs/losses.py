@@ -17,7 +17,7 @@ from restitution.curve.follow import Impact
 from restitution.curve.point import Point
 from restitution.display import quantity
 from restitution.impacts.losses import LossFactors, loss_factors
-from restitution.impacts.time_integration import force_of_columns
+from restitution.impacts.stored_force import force_of_columns
 from restitution.losses.losses import Losses
 from restitution.theory import Hertz
 
@@ -129,8 +129,7 @@ def with_losses(
 
 
 def _filled(point: Point, factors: Mapping[str, float]) -> Point:
-    product = factors["plate_factor"] * factors["waves_factor"] * factors["viscosity_factor"]
-    product = 1.0 if math.isnan(product) else product  # the bodies stick
+    product = 1.0 if math.isnan(factors["product"]) else factors["product"]  # the bodies stick
     error = point.restitution * abs(product - factors["together"])
     return replace(
         point,

@@ -22,7 +22,7 @@ from restitution.curve.oblique import MeanObliquePoint, ObliquePoint
 from restitution.curve.point import Point
 from restitution.errors import CaseError, DomainError, NotConvergedError, OutputError
 from restitution.impacts.oblique import ObliqueCollision, collide_obliquely, spin_per_impulse
-from restitution.impacts.time_integration import StoredForce, force_of
+from restitution.impacts.stored_force import StoredForce, force_of
 from restitution.results.writer import ResultsFolder, curve_variables
 from restitution.surfaces import Surface
 

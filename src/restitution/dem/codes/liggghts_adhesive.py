@@ -14,6 +14,7 @@ import math
 from restitution.dem.codes.liggghts import CODE, LOWEST, SETTING, by_types, inputs
 from restitution.dem.damped_adhesion import (
     area_model,
+    area_slope,
     fit_damping,
     known_pull_off,
     misfit,
@@ -39,11 +40,10 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
             given[i, j], densities[i, j] = max(pair.restitution, LOWEST), 0.0
             continue
         force = known_pull_off(law, velocity)
-        fit = fit_damping(area_model(law, force), law, force)
+        fit = fit_damping(area_model(law, force, LOWEST), law, force)
         s = fit.strength
         given[i, j] = max(math.exp(-math.pi * s / math.sqrt(1 - s**2)), LOWEST)
-        stiffness = 4 / 3 * law.contact_modulus * math.sqrt(law.radius)
-        densities[i, j] = (6.75 * force * stiffness**2) ** (1 / 3) / (2 * math.pi * law.radius)
+        densities[i, j] = area_slope(law, force) / (2 * math.pi * law.radius)
         said.append(f"Pair {i} {j}: {misfit(fit, law)}.")
     values = {
         "cohesion": " cohesion sjkr",
