@@ -21,6 +21,7 @@ from restitution.contact.checks.edge import EdgeReachedError, largest_reach
 from restitution.contact.checks.resolution import predicted_radius
 from restitution.contact.contact import Contact
 from restitution.contact.models import COMPANION
+from restitution.contact.patch.law import law_of_patches
 from restitution.contact.path import unloading_path
 from restitution.contact.plasticity.cavity import ExpandingCavity
 from restitution.contact.plasticity.remembered import RememberedCavity
@@ -77,8 +78,8 @@ class RunIn:
         seed: Seed of the places.
 
     Raises:
-        CaseError: The contact is periodic or `Truncated`, a surface does not repeat, or "track" is
-            given without a wall.
+        CaseError: The contact is periodic, `Truncated` or has waves below the grid, a surface does
+            not repeat, or "track" is given without a wall.
     """
 
     @typed
@@ -140,6 +141,7 @@ class RunIn:
         )
         return first, second
 
+    @typed
     def coverage_of(self, velocity: float) -> float:
         """Coverage of one impact.
 
@@ -171,6 +173,7 @@ class RunIn:
         for velocity in listed:
             yield self.hit(float(velocity), *self._next_places())
 
+    @typed
     def hit(self, velocity: float, first: Shift, second: Shift) -> RepeatedImpact:
         """Let the bodies collide once, and change their surfaces.
 
@@ -192,6 +195,7 @@ class RunIn:
         self._coverage += self.coverage_of(velocity)
         return RepeatedImpact.of(self._count, self._coverage, velocity, state, collision)
 
+    @typed
     def probe(self, velocity: float, places: int, seed: int) -> Iterator[RepeatedImpact]:
         """Let the bodies collide at other places, each time with the surfaces as they are now.
 
@@ -325,6 +329,11 @@ def _check(contact: Contact, other: Surface | None, place: str) -> None:
         raise CaseError(
             f'plasticity: "{contact.plasticity.label}" defines a single impact; use '
             "ConstantBound or ExpandingCavity"
+        )
+    if law_of_patches(contact) is not None:
+        raise CaseError(
+            "adhesion: waves below the grid do not wear; give the surface with all waves, and no "
+            f"{type(contact.adhesion).__name__}"
         )
     if other is not None and other.grid != contact.grid:
         raise CaseError("other: is on another grid; give a surface on the grid of contact")
