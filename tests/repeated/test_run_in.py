@@ -228,6 +228,7 @@ def slope(grid=GRID):
         (lambda: RunIn(contact_of(), place="there"), "not one of random, same, track"),
         (lambda: RunIn(contact_of(), rough(grid=Grid((32, 32), (4e-7, 4e-7)))), "another grid"),
         (lambda: RunIn(contact_of(pair=Pair(WALL, WALL), periodic=True)), "do not collide"),
+        (lambda: RunIn(contact_of()).hit(-V, MIDDLE, MIDDLE), "velocity: -0.2 m/s is not positive"),
         (lambda: next(RunIn(contact_of()).impacts(30.0)), "larger than the surface"),
     ],
 )

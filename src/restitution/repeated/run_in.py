@@ -25,7 +25,7 @@ from restitution.contact.patch.law import law_of_patches
 from restitution.contact.path import unloading_path
 from restitution.contact.plasticity.cavity import ExpandingCavity
 from restitution.contact.plasticity.remembered import RememberedCavity
-from restitution.contact.prescribed.velocity import solve_at_velocity
+from restitution.contact.prescribed.velocity import mass_in_impact, solve_at_velocity
 from restitution.contact.state import State
 from restitution.errors import CaseError, DomainError
 from restitution.numerics.grid import Grid
@@ -150,6 +150,9 @@ class RunIn:
 
         Returns:
             Contact area of smooth bodies over the area of the surface (dimensionless).
+
+        Raises:
+            CaseError: The velocity is not positive, or a body has no density.
         """
         contact = self._contact
         area = nominal_area(contact.pair, contact.hardness, velocity)
@@ -166,6 +169,7 @@ class RunIn:
             Each impact.
 
         Raises:
+            CaseError: A velocity is not positive, or a body has no density.
             DomainError: A contact is larger than the surface.
             NotConvergedError: A solve did not converge.
         """
@@ -186,6 +190,7 @@ class RunIn:
             The impact.
 
         Raises:
+            CaseError: The velocity is not positive, or a body has no density.
             DomainError: The contact is larger than the surface.
             NotConvergedError: A solve did not converge.
         """
@@ -208,6 +213,7 @@ class RunIn:
             Each impact.
 
         Raises:
+            CaseError: A velocity is not positive, or a body has no density.
             DomainError: A contact is larger than the surface.
             NotConvergedError: A solve did not converge.
         """
@@ -302,10 +308,9 @@ def nominal_area(pair: Pair, hardness: float, velocity: float) -> float:
 
     Source: C. Thornton, Z. Ning, Powder Technol. 99 (1998) 154–162, for the indentation.
     """
-    if pair.mass is None:
-        raise CaseError("density: is missing; an impact velocity needs the density of both bodies")
+    mass = mass_in_impact(pair, velocity)
     smooth = ThorntonNing(pair.radius, pair.contact_modulus, min(hardness, pair.contact_modulus))
-    depth = float(smooth.indentation_from_velocity(velocity, pair.mass))
+    depth = float(smooth.indentation_from_velocity(velocity, mass))
     return math.pi * predicted_radius(pair, depth, hardness) ** 2
 
 
