@@ -16,12 +16,8 @@ from restitution.contact.contact import Contact, smooth
 from restitution.contact.models import COMPANION
 from restitution.curve.columns import array
 from restitution.errors import CaseError
-from restitution.repeated.points import (
-    RepeatedImpact,
-    RunInPoint,
-    SteadyState,
-    half_interval,
-)
+from restitution.numerics.intervals import half_interval
+from restitution.repeated.points import RepeatedImpact, RunInPoint, SteadyState
 from restitution.repeated.run_in import RunIn, repeats
 from restitution.results.writer import ResultsFolder, replace_file
 from restitution.runs.log import Say, ignore
