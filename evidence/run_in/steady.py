@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from restitution import ConstantBound, Contact, Grid, RunIn, generate_surface
+from restitution.numerics.intervals import half_interval
 from restitution.repeated.velocities import drawn, in_turn
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
@@ -30,7 +31,7 @@ def measured(name: str, nodes: int, seed: int, speeds) -> dict:
         "seed": seed,
         "impacts": runs.count,
         "restitution": round(float(e.mean()), 4),
-        "half_interval": round(2.01 * float(e.std(ddof=1)) / PLACES**0.5, 4),
+        "half_interval": round(half_interval(PLACES) * float(e.std(ddof=1)), 4),
         "standard_deviation": round(float(e.std(ddof=1)), 4),
     }
     print(row, flush=True)

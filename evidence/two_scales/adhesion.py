@@ -24,7 +24,7 @@ from restitution.contact.contact import Contact
 from restitution.contact.loading import solve
 from restitution.contact.patch.law import PatchAttraction
 from restitution.numerics.grid import Grid
-from restitution.runs.companions import half_interval
+from restitution.numerics.intervals import half_interval
 from restitution.surfaces import Surface, generate_surface
 from restitution.surfaces.refine import coarsen
 from restitution.surfaces.split import split

@@ -21,7 +21,7 @@ from restitution.contact.contact import Contact
 from restitution.contact.patch.law import PatchRepulsion
 from restitution.contact.prescribed.velocity import solve_at_velocity
 from restitution.numerics.grid import Grid
-from restitution.runs.companions import half_interval
+from restitution.numerics.intervals import half_interval
 from restitution.surfaces import Surface, generate_surface
 from restitution.surfaces.refine import coarsen
 from restitution.surfaces.split import split

@@ -9,6 +9,7 @@ import pytest
 import restitution as rs
 from restitution.contact.cohesive.law import Cohesive
 from restitution.contact.loading import step
+from restitution.contact.patch import repulsion, stored
 from restitution.contact.patch.attraction import AttractionTable
 from restitution.contact.patch.law import PatchAttraction, PatchRepulsion, flat
 from restitution.contact.patch.repulsion import PatchCurve, RepulsionTable
@@ -127,6 +128,22 @@ def test_the_law_follows_the_bodies(two_scales):
     assert same == two_scales
 
 
+def test_solved_patches_are_kept(two_scales, monkeypatch, tmp_path):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    patch, model = two_scales.adhesion.patches[0], rs.ConstantBound(2.9e9)
+    contact = rs.Contact(flat(PAIR), patch, periodic=True)
+    monkeypatch.setattr(stored, "_known", {})
+    first = PatchCurve.of(contact, model)
+    assert len(list((tmp_path / "restitution" / "patches").iterdir())) == 1
+    monkeypatch.setattr(repulsion, "_columns", lambda *_: pytest.fail("solved again"))
+    for memory in (stored._known, {}):
+        monkeypatch.setattr(stored, "_known", memory)
+        np.testing.assert_array_equal(PatchCurve.of(contact, model).pressure, first.pressure)
+    for other in (rs.ConstantBound(2.8e9), rs.Elastic()):
+        with pytest.raises(pytest.fail.Exception, match="solved again"):
+            PatchCurve.of(contact, other)
+
+
 FINE = rs.Body(radius=5e-6, youngs_modulus=72e9, poissons_ratio=0.17, density=2200.0)
 FINE_PAIR = rs.Pair(FINE, replace(FINE, radius=math.inf))
 W, Z0 = 0.05, 0.3e-9
@@ -166,8 +183,6 @@ def test_an_attraction_is_the_derivative_of_its_energy():
     ahead = law.potential(gap + d)
     np.testing.assert_allclose((ahead[0] - energy) / d, traction, rtol=0.02, atol=1e3)
     np.testing.assert_allclose((ahead[1] - traction) / d, stiffness, rtol=0.05, atol=1e13)
-    whole = rs.theory.LennardJones  # the energy of spheres is the integral of that per area
-    assert whole is not None
     g = np.geomspace(1e-9, 1e-6, 4000)
     integral = 2 * math.pi * 5e-6 * np.trapezoid(law.energy(g), g)
     assert law.rigid_sphere_energy(1e-9, 5e-6) == approx(integral, rel=5e-3)

@@ -25,6 +25,7 @@ from restitution import (
     solve,
     solve_at_velocity,
 )
+from restitution.contact.patch.law import PatchRepulsion
 from restitution.repeated.run_in import nominal_area
 from tolerance import approx
 
@@ -219,10 +220,15 @@ def slope(grid=GRID):
     [
         (lambda: RunIn(replace(contact_of(), surface=slope())), "does not repeat"),
         (lambda: RunIn(contact_of(Truncated(1e9))), "single impact"),
+        (
+            lambda: RunIn(contact_of(adhesion=PatchRepulsion((rough(),), 1e-6))),
+            "no PatchRepulsion",
+        ),
         (lambda: RunIn(contact_of(), place="track"), "needs a wall"),
         (lambda: RunIn(contact_of(), place="there"), "not one of random, same, track"),
         (lambda: RunIn(contact_of(), rough(grid=Grid((32, 32), (4e-7, 4e-7)))), "another grid"),
         (lambda: RunIn(contact_of(pair=Pair(WALL, WALL), periodic=True)), "do not collide"),
+        (lambda: RunIn(contact_of()).hit(-V, MIDDLE, MIDDLE), "velocity: -0.2 m/s is not positive"),
         (lambda: next(RunIn(contact_of()).impacts(30.0)), "larger than the surface"),
     ],
 )

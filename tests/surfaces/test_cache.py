@@ -1,4 +1,5 @@
 import os
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -23,9 +24,9 @@ class Maker:
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    monkeypatch.setattr(cache, "_folder", lambda: tmp_path / "kept")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setattr(cache, "_LONG", -1.0)
-    return tmp_path / "kept"
+    return tmp_path / "restitution" / "surfaces"
 
 
 def test_a_surface_that_took_long_is_made_once(folder):
@@ -71,7 +72,7 @@ def test_damaged_files_are_made_anew(folder, damage):
 
 def test_a_folder_that_cannot_be_written_is_let_be(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("")
-    monkeypatch.setattr(cache, "_folder", lambda: tmp_path / "file" / "kept")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
     monkeypatch.setattr(cache, "_LONG", -1.0)
     assert cache.kept({}, Maker()).height.shape == (3, 4)
 
@@ -83,12 +84,12 @@ def test_the_oldest_make_room(folder, monkeypatch):
     for age, file in enumerate(files):
         os.utime(file, (1000 - age, 1000 - age))
     size = files[0].stat().st_size
-    monkeypatch.setattr(cache, "_MOST", size + cache._REST + 100)
+    monkeypatch.setattr(cache, "_FILES", replace(cache._FILES, most=2 * size + 100))
     cache.kept({"n": 3}, Maker())
     left = set(folder.iterdir())
     assert files[0] in left  # the youngest of the three
     assert files[2] not in left
-    assert sum(file.stat().st_size for file in left) <= size + cache._REST + 100
+    assert sum(file.stat().st_size for file in left) <= 2 * size + 100
 
 
 def test_cases_use_it(folder, case_text, tmp_path, monkeypatch):

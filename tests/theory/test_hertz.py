@@ -53,6 +53,18 @@ def test_the_pressure_carries_the_force_and_ends_at_the_contact_radius(d):
     assert_allclose(LAW.pressure(0.0, d), LAW.peak_pressure(d), rtol=1e-14)
 
 
+def test_an_impact_lasts_as_long_as_its_motion():
+    m, V = 2e-7, 0.3
+    deepest = LAW.indentation_from_energy(0.5 * m * V**2)
+    # With δ = δ_max (1 − s²), the integrand of ∫ dδ/v is finite at the deepest point.
+    inward = quad(
+        lambda s: 2 * s * deepest / np.sqrt(V**2 - 2 * LAW.stored_energy(deepest * (1 - s**2)) / m),
+        0,
+        1,
+    )[0]
+    assert LAW.duration(V, m) == approx(2 * inward, rel=1e-3)
+
+
 def test_the_peak_pressure_is_one_and_a_half_times_the_mean():
     mean = LAW.force(1e-7) / LAW.contact_area(1e-7)
     assert_allclose(LAW.peak_pressure(1e-7), 1.5 * mean, rtol=1e-14)

@@ -10,6 +10,7 @@ import numpy as np
 from restitution.errors import CaseError
 from restitution.laws.law import FittedLaw, Law
 from restitution.laws.particle import Particle
+from restitution.theory import Hertz
 
 # Factor on Mindlin's tangential stiffness (1949: 8 G* a): the edge of a real contact slides first,
 # so the mean stiffness during an impact is smaller. In LAMMPS (`mindlin_rescale/force`), e_t of
@@ -80,12 +81,9 @@ def shear_modulus(first: Particle, second: Particle) -> float:
 
 
 def contact_time(law: Law, radius: float | None = None) -> float:
-    """Contact time (s) of an elastic impact at 1 m/s; `radius` (m) replaces the R* of the law.
-
-    2.87 (m*²/(R* E*² V))^⅕ (Johnson 1985, eq. 11.24).
-    """
+    """Contact time (s) of an elastic impact at 1 m/s; `radius` (m) replaces the R* of the law."""
     R = law.radius if radius is None else radius
-    return float(2.87 * (law.mass**2 / (R * law.contact_modulus**2)) ** 0.2)
+    return float(Hertz(R, law.contact_modulus).duration(1.0, law.mass))
 
 
 def pull_off_force(law: Law, velocity: float) -> float:

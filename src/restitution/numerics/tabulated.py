@@ -27,6 +27,21 @@ class Tabulated:
     def last(self) -> float:
         return self.first + self.step * (self.values.size - 1)
 
+    @property
+    def points(self) -> Array:
+        """The arguments of `values`."""
+        return np.asarray(self.first + self.step * np.arange(self.values.size))
+
+    @property
+    def whole(self) -> float:
+        """Integral from `first` to `last`."""
+        return float(self._sums[-1] * self.step)
+
+    def linear(self, values: Array, x: Array) -> Array:
+        """Interpolate other `values` on this table, constant beyond both ends."""
+        at = (np.asarray(x) - self.first) / self.step
+        return np.asarray(np.interp(at, np.arange(values.size), values))
+
     @cached_property
     def _coefficients(self) -> tuple[Array, Array, Array, Array]:
         """Coefficients of each cell for 1, t, t² and t³, with t from 0 to 1."""

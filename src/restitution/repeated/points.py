@@ -12,11 +12,11 @@ import numpy as np
 from restitution.collision import Collision
 from restitution.contact.state import State
 from restitution.curve.columns import Record, array, column, magnitude
+from restitution.numerics.intervals import half_interval
 
 FEWEST = 40  # smallest number of impacts for a statement on the steady state
 STEADY = 0.02  # largest change of COR per coverage in a steady sequence
 _BLOCKS = 8
-CONFIDENCE = 0.95  # level of the interval of a mean
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -187,11 +187,3 @@ class SteadyState:
             trend_error=trend_error,
             steady=abs(trend) + trend_error <= STEADY,
         )
-
-
-def half_interval(n: int) -> float:
-    """Half of the 95 % interval of a mean of n values, in standard deviations of a value."""
-    # stdtrit is the quantile of Student's t. Importing scipy.stats would take 30 MB more memory.
-    from scipy.special import stdtrit
-
-    return float(stdtrit(n - 1, 0.5 * (1 + CONFIDENCE))) / math.sqrt(n)

@@ -21,10 +21,11 @@ from restitution.contact.checks.edge import EdgeReachedError, largest_reach
 from restitution.contact.checks.resolution import predicted_radius
 from restitution.contact.contact import Contact
 from restitution.contact.models import COMPANION
+from restitution.contact.patch.law import law_of_patches
 from restitution.contact.path import unloading_path
 from restitution.contact.plasticity.cavity import ExpandingCavity
 from restitution.contact.plasticity.remembered import RememberedCavity
-from restitution.contact.prescribed.velocity import solve_at_velocity
+from restitution.contact.prescribed.velocity import mass_in_impact, solve_at_velocity
 from restitution.contact.state import State
 from restitution.errors import CaseError, DomainError
 from restitution.numerics.grid import Grid
@@ -77,8 +78,8 @@ class RunIn:
         seed: Seed of the places.
 
     Raises:
-        CaseError: The contact is periodic or `Truncated`, a surface does not repeat, or "track" is
-            given without a wall.
+        CaseError: The contact is periodic, `Truncated` or has waves below the grid, a surface does
+            not repeat, or "track" is given without a wall.
     """
 
     @typed
@@ -140,6 +141,7 @@ class RunIn:
         )
         return first, second
 
+    @typed
     def coverage_of(self, velocity: float) -> float:
         """Coverage of one impact.
 
@@ -148,6 +150,9 @@ class RunIn:
 
         Returns:
             Contact area of smooth bodies over the area of the surface (dimensionless).
+
+        Raises:
+            CaseError: The velocity is not positive, or a body has no density.
         """
         contact = self._contact
         area = nominal_area(contact.pair, contact.hardness, velocity)
@@ -164,6 +169,7 @@ class RunIn:
             Each impact.
 
         Raises:
+            CaseError: A velocity is not positive, or a body has no density.
             DomainError: A contact is larger than the surface.
             NotConvergedError: A solve did not converge.
         """
@@ -171,6 +177,7 @@ class RunIn:
         for velocity in listed:
             yield self.hit(float(velocity), *self._next_places())
 
+    @typed
     def hit(self, velocity: float, first: Shift, second: Shift) -> RepeatedImpact:
         """Let the bodies collide once, and change their surfaces.
 
@@ -183,6 +190,7 @@ class RunIn:
             The impact.
 
         Raises:
+            CaseError: The velocity is not positive, or a body has no density.
             DomainError: The contact is larger than the surface.
             NotConvergedError: A solve did not converge.
         """
@@ -192,6 +200,7 @@ class RunIn:
         self._coverage += self.coverage_of(velocity)
         return RepeatedImpact.of(self._count, self._coverage, velocity, state, collision)
 
+    @typed
     def probe(self, velocity: float, places: int, seed: int) -> Iterator[RepeatedImpact]:
         """Let the bodies collide at other places, each time with the surfaces as they are now.
 
@@ -204,6 +213,7 @@ class RunIn:
             Each impact.
 
         Raises:
+            CaseError: A velocity is not positive, or a body has no density.
             DomainError: A contact is larger than the surface.
             NotConvergedError: A solve did not converge.
         """
@@ -298,10 +308,9 @@ def nominal_area(pair: Pair, hardness: float, velocity: float) -> float:
 
     Source: C. Thornton, Z. Ning, Powder Technol. 99 (1998) 154–162, for the indentation.
     """
-    if pair.mass is None:
-        raise CaseError("density: is missing; an impact velocity needs the density of both bodies")
+    mass = mass_in_impact(pair, velocity)
     smooth = ThorntonNing(pair.radius, pair.contact_modulus, min(hardness, pair.contact_modulus))
-    depth = float(smooth.indentation_from_velocity(velocity, pair.mass))
+    depth = float(smooth.indentation_from_velocity(velocity, mass))
     return math.pi * predicted_radius(pair, depth, hardness) ** 2
 
 
@@ -325,6 +334,11 @@ def _check(contact: Contact, other: Surface | None, place: str) -> None:
         raise CaseError(
             f'plasticity: "{contact.plasticity.label}" defines a single impact; use '
             "ConstantBound or ExpandingCavity"
+        )
+    if law_of_patches(contact) is not None:
+        raise CaseError(
+            "adhesion: waves below the grid do not wear; give the surface with all waves, and no "
+            f"{type(contact.adhesion).__name__}"
         )
     if other is not None and other.grid != contact.grid:
         raise CaseError("other: is on another grid; give a surface on the grid of contact")

@@ -113,13 +113,11 @@ class RunResults:
     folder: Path | None
 
     @classmethod
-    def in_memory(
-        cls, curve: Curve, summary: dict[str, Any], dataset: xr.Dataset, oblique: Oblique = ()
-    ) -> Self:
-        results = cls(None)
-        # `cached_property` looks here first.
-        vars(results).update(curve=curve, summary=summary, dataset=dataset, oblique=oblique)
-        return results
+    def in_memory(cls, **results: Any) -> Self:
+        """`results` by the names of the attributes that else read them."""
+        made = cls(None)
+        vars(made).update(results)  # `cached_property` looks here first
+        return made
 
     @cached_property
     def curve(self) -> Curve:
@@ -215,13 +213,12 @@ class RunResults:
         path = self._file(IMPACTS_FILE)
         if not path.exists():
             return ()
-        columns = {"sequence": SEQUENCE} | IMPACT_COLUMNS
+        columns = {SEQUENCE.header: SEQUENCE} | IMPACT_COLUMNS
         rows = _read_rows(path, columns, columns)
-        numbers = dict.fromkeys(row["sequence"] for row in rows)
-        return tuple(
-            tuple(RepeatedImpact.of_cells(row) for row in rows if row["sequence"] == number)
-            for number in numbers
-        )
+        sequences: dict[float, list[RepeatedImpact]] = {}
+        for row in rows:
+            sequences.setdefault(row[SEQUENCE.header], []).append(RepeatedImpact.of_cells(row))
+        return tuple(map(tuple, sequences.values()))
 
     def _file(self, name: str) -> Path:
         return stored_file(self.folder, name)

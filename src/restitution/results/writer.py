@@ -36,7 +36,15 @@ from restitution.results.checksums import CHECKSUMS, checksums
 from restitution.results.coordinates import with_coordinates
 from restitution.results.interruption import hold_signals
 from restitution.results.reader import EnsembleResults, RunResults
-from restitution.results.schema import COLUMNS, LOCK, OBLIQUE_FILE, UNLOADING_COLUMNS
+from restitution.results.schema import (
+    COLUMNS,
+    COVERAGE_FILE,
+    IMPACTS_FILE,
+    LOCK,
+    OBLIQUE_FILE,
+    SEQUENCE,
+    UNLOADING_COLUMNS,
+)
 
 _BLOCK = 1 << 16  # bytes written to find out whether the disk is full
 
@@ -104,8 +112,15 @@ class ResultsFolder:
     def put_run_in(
         self, points: Sequence[RunInPoint], impacts: tuple[tuple[RepeatedImpact, ...], ...]
     ) -> None:
-        """Keep the results of repeated impacts: COR at each coverage, and all impacts."""
+        """Keep and write COR at each coverage, and the impacts of each sequence."""
         self.run_in, self.impacts = tuple(points), impacts
+        self.put_table(COVERAGE_FILE, points)
+        rows = (
+            {SEQUENCE.header: float(number)} | impact.cells()
+            for number, sequence in enumerate(impacts, 1)
+            for impact in sequence
+        )
+        self.put_table(IMPACTS_FILE, list(rows))
 
     def put_table(self, name: str, points: Sequence[Record | Mapping[str, Any]]) -> None:
         """Write a table, completely or not at all."""
@@ -130,9 +145,14 @@ class ResultsFolder:
         kind = EnsembleResults if "realisations" in self.summary else RunResults
         if self.path is not None:
             return kind(self.path)
-        results = kind.in_memory(self.curve, self.summary, self.dataset, self.oblique)
-        vars(results).update(run_in=self.run_in, impacts=self.impacts)
-        return results
+        return kind.in_memory(
+            curve=self.curve,
+            summary=self.summary,
+            dataset=self.dataset,
+            oblique=self.oblique,
+            run_in=self.run_in,
+            impacts=self.impacts,
+        )
 
     def discard(self) -> None:
         """Remove the empty tables, and the folder if it is new, so that another run can use it."""

@@ -20,7 +20,8 @@ from restitution.curve.point import Point
 from restitution.curve.work_curve import WorkCurve
 from restitution.display import quantity, with_error
 from restitution.errors import RestitutionError
-from restitution.runs.companions import Companions, half_interval
+from restitution.numerics.intervals import half_interval
+from restitution.runs.companions import Companions
 
 _NEAR = 0.02  # relative change of the sticking velocity at which its search ends
 _MOST_SOLVES = 6

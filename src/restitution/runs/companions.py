@@ -31,8 +31,7 @@ from restitution.curve.columns import Array
 from restitution.curve.follow import Load, Unloading, follow
 from restitution.curve.work_curve import WorkCurve
 from restitution.errors import CaseError, DomainError, RestitutionError
-from restitution.repeated.points import CONFIDENCE as CONFIDENCE
-from restitution.repeated.points import half_interval as half_interval
+from restitution.numerics.intervals import half_interval
 from restitution.runs.log import Say, ignore
 from restitution.surfaces.refine import coarsen
 

@@ -14,6 +14,7 @@ from restitution.case.case import Case
 from restitution.curve.curve import largest
 from restitution.curve.point import MeanPoint, Point
 from restitution.errors import RestitutionError
+from restitution.numerics.intervals import CONFIDENCE, half_interval
 from restitution.results.writer import (
     ResultsFolder,
     curve_variables,
@@ -21,7 +22,6 @@ from restitution.results.writer import (
     status_attributes,
 )
 from restitution.runs.attraction import Sticking, mean_of, stored, summary_of, with_errors
-from restitution.runs.companions import CONFIDENCE, half_interval
 from restitution.runs.error_budget import (
     MISSING_BAND,
     ErrorBudget,

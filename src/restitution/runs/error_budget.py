@@ -19,8 +19,9 @@ from restitution.curve.columns import Array, array
 from restitution.curve.curve import largest
 from restitution.curve.point import Point
 from restitution.display import counted
+from restitution.numerics.intervals import half_interval
 from restitution.runs.attraction import with_pull_off_errors
-from restitution.runs.companions import SURFACES, Companions, half_interval
+from restitution.runs.companions import SURFACES, Companions
 from restitution.runs.log import Say, ignore
 from restitution.runs.material_advice import MaterialPart, advice, as_rows
 from restitution.runs.material_parts import material_parts

@@ -43,7 +43,7 @@ def loss_information(case: Case) -> str:
         return ""
     said = []
     if plate := losses.plate:
-        longest = _duration(pair, _velocities(case, pair.mass)[0])
+        longest, _ = _durations(case, pair.mass)
         said.append(
             f"bending waves in the wall of {quantity(plate.thickness, 'm')}, which must be free of "
             f"edges and supports within {quantity(plate.reach(longest), 'm')}"
@@ -64,7 +64,7 @@ def loss_warnings(case: Case) -> list[str]:
     plate = losses.plate
     if pair.mass is None or plate is None:
         return []
-    shortest = _duration(pair, _velocities(case, pair.mass)[-1])
+    _, shortest = _durations(case, pair.mass)
     if shortest >= _TRIPS * plate.round_trip:
         return []
     return [
@@ -75,22 +75,15 @@ def loss_warnings(case: Case) -> list[str]:
     ]
 
 
-def _velocities(case: Case, mass: float) -> tuple[float, float]:
-    """The lowest and highest impact velocity (m/s), estimated for smooth elastic bodies."""
-    pair, ends = case.pair(), (case.depths()[0], case.depths()[-1])
-    if case.impact is not None:
-        return ends
+def _durations(case: Case, mass: float) -> tuple[float, float]:
+    """Duration (s) of the slowest and the fastest impact, estimated for smooth elastic bodies."""
+    pair, velocities = case.pair(), np.array([case.depths()[0], case.depths()[-1]])
     smooth = Hertz(pair.radius, pair.contact_modulus)
-    depths = [float(smooth.indentation(end)) if case.load else end for end in ends]
-    low, high = (float(smooth.impact_velocity(depth, mass)) for depth in depths)
-    return low, high
-
-
-def _duration(pair: Pair, velocity: float) -> float:
-    """Duration (s) of an impact of smooth elastic bodies (Johnson 1985, eq. 11.24)."""
-    mass = pair.mass or math.nan
-    scale: float = (mass**2 / (pair.radius * pair.contact_modulus**2 * velocity)) ** 0.2
-    return 2.87 * scale
+    if case.impact is None:
+        depths = smooth.indentation(velocities) if case.load else velocities
+        velocities = smooth.impact_velocity(depths, mass)
+    longest, shortest = smooth.duration(velocities, mass).tolist()
+    return longest, shortest
 
 
 def with_losses(

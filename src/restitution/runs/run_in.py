@@ -16,14 +16,9 @@ from restitution.contact.contact import Contact, smooth
 from restitution.contact.models import COMPANION
 from restitution.curve.columns import array
 from restitution.errors import CaseError
-from restitution.repeated.points import (
-    RepeatedImpact,
-    RunInPoint,
-    SteadyState,
-    half_interval,
-)
+from restitution.numerics.intervals import half_interval
+from restitution.repeated.points import RepeatedImpact, RunInPoint, SteadyState
 from restitution.repeated.run_in import RunIn, repeats
-from restitution.results.schema import COVERAGE_FILE, IMPACTS_FILE
 from restitution.results.writer import ResultsFolder, replace_file
 from restitution.runs.log import Say, ignore
 from restitution.surfaces import Surface, describe
@@ -66,11 +61,6 @@ def run_in(
     points = [point for one in own for point in one.points]
     if case.total_error:
         points = _with_errors(case, folder, contact, bodies, points, progress)
-    out.put_table(COVERAGE_FILE, points)
-    impacts = [
-        {"sequence": float(k)} | row.cells() for k, one in enumerate(own, 1) for row in one.impacts
-    ]
-    out.put_table(IMPACTS_FILE, impacts)
     out.put_run_in(points, tuple(tuple(one.impacts) for one in own))
     return {
         "place": table.place,
@@ -206,8 +196,8 @@ def _with_errors(
     def coarse(other: tuple[Surface, Surface], seed: int, words: str) -> np.ndarray[Any, Any]:
         coarser = _coarser(other)
         on = replace(contact, surface=coarser[0])
-        found = _sequences(case, on, coarser, seed, progress, words)
-        return array([point for one in found for point in one.points], "restitution")
+        runs = _sequences(case, on, coarser, seed, progress, words)
+        return array([point for one in runs for point in one.points], "restitution")
 
     same = coarse(bodies, table.seed, "error: cells twice as large")
     others = [

@@ -61,6 +61,15 @@ class Hertz(PositiveFields):
         (m,) = positive(mass=mass)
         return scalar_or_array(np.sqrt(2 * self.stored_energy(indentation) / m))
 
+    def duration(self, velocity: Values, mass: Values) -> Array:
+        """Duration 2.87 (m*²/(R* E*² V))^⅕ (s) of an impact.
+
+        Source:
+            K. L. Johnson, *Contact Mechanics* (1985), eq. 11.24.
+        """
+        V, m = positive(velocity=velocity, mass=mass)
+        return scalar_or_array(2.87 * (m**2 / (self.radius * self.contact_modulus**2 * V)) ** 0.2)
+
     def peak_pressure(self, indentation: Values) -> Array:
         """Pressure p₀ = 2E*a/(πR*) (Pa) at the centre, 3/2 of the mean pressure."""
         # p₀ = 2E*a/(πR*) with a = (R*δ)^½

@@ -130,11 +130,10 @@ class AttractionTable:
         p, lost = np.mean([c.at(gap) for c in curves], axis=0)
         return cls(Tabulated(first, (last - first) / _CELLS, p), lost)
 
-    @cached_property
-    def _ends(self) -> tuple[float, float]:
-        """Integral of the pressure up to the end of the table, and beyond."""
-        whole, last, _ = (float(v) for v in self.pressure(np.asarray(self.pressure.last)))
-        return whole, 0.5 * last * self.pressure.last
+    @property
+    def _rest(self) -> float:
+        """Integral of the pressure beyond the table."""
+        return 0.5 * float(self.pressure.values[-1]) * self.pressure.last
 
     def potential(self, gap: Array) -> tuple[Array, Array, Array]:
         """Energy (J/m²), traction (Pa) and its derivative (Pa/m) at each `gap` (m).
@@ -144,12 +143,11 @@ class AttractionTable:
         end = self.pressure.last
         inside = np.minimum(gap, end)
         integral, p, slope = self.pressure(inside)
-        whole, rest = self._ends
-        energy = whole - integral + rest
+        energy = self.pressure.whole - integral + self._rest
         if (far := gap > end).any():
             ratio = end / gap[far]
             p_end = self.pressure.values[-1]
-            energy[far] = rest * ratio**2
+            energy[far] = self._rest * ratio**2
             p[far] = p_end * ratio**3
             slope[far] = -3 * p_end * ratio**3 / gap[far]
         return energy, -p, -slope
@@ -166,33 +164,28 @@ class AttractionTable:
 
     def lost_at(self, gap: Array) -> Array:
         """Work per area dissipated by loading to each `gap` (J/m²)."""
-        at = (gap - self.pressure.first) / self.pressure.step
-        return np.asarray(np.interp(at, np.arange(self.lost.size), self.lost))
+        return self.pressure.linear(self.lost, gap)
 
     def gap_at(self, pressure: Array) -> Array:
         """Gap (m) at which the pressure (Pa, not negative) has this value."""
         p = self.pressure
         rising = slice(int(np.flatnonzero(p.values > 0)[-1]) + 1, None, -1)
-        gap = p.first + p.step * np.arange(p.values.size)
-        inside = np.interp(pressure, p.values[rising], gap[rising])
+        inside = np.interp(pressure, p.values[rising], p.points[rising])
         _, most, slope = p(np.asarray(p.first))
         return np.asarray(inside + np.maximum(np.asarray(pressure) - most, 0.0) / slope)
 
     @cached_property
     def _energy(self) -> Tabulated:
-        count = np.arange(self.pressure.values.size, dtype=np.float64)
-        gap = np.asarray(self.pressure.first + self.pressure.step * count, dtype=np.float64)
-        return replace(self.pressure, values=self.potential(gap)[0])
+        return replace(self.pressure, values=self.potential(self.pressure.points)[0])
 
     def energy_between_spheres(self, gap: float, radius: float) -> float:
         """Energy (J) of spheres with the reduced `radius` (m) and the smallest gap `gap` (m)."""
         end = self.pressure.last
-        beyond = self._ends[1] * end
+        beyond = self._rest * end
         if gap >= end:
             integral = beyond * end / gap
         else:
-            whole, part = (float(self._energy(np.asarray(g))[0]) for g in (end, gap))
-            integral = whole - part + beyond
+            integral = self._energy.whole - float(self._energy(np.asarray(gap))[0]) + beyond
         return 2 * math.pi * radius * integral
 
     @cached_property

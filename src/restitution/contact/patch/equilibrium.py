@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -86,7 +87,7 @@ class PatchState(State):
         return np.asarray(self.box_pressure > _TOUCHING * largest)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Branch:
     """Unloading of the patches whose smallest gap (m) was `least`; arrays of one shape.
 
@@ -106,13 +107,13 @@ class Branch:
         lost = work * table.of_gap(table.lost, least)
         return cls(least, pressure, work - lost, lost, table.of_gap(table.range, least))
 
-    @property
+    @cached_property
     def power(self) -> Array:
         """The exponent m of the pressure."""
         energy = np.maximum(self.energy, 1e-300)
         return np.clip(self.pressure * self.range / energy - 1, _LINEAR, _STIFFEST)
 
-    @property
+    @cached_property
     def length(self) -> Array:
         """Distance (m) to the gap of separation, at which all elastic energy is returned."""
         return (self.power + 1) * self.energy / np.maximum(self.pressure, 1e-300)
@@ -139,7 +140,9 @@ class PatchNodes:
         self.base, self.table = base, table
         self.limit = np.broadcast_to(np.asarray(limit, dtype=float), base.shape)
         finite = np.isfinite(self.limit)
-        self.lowest = np.where(finite, table.gap_at(np.where(finite, self.limit, 1.0)), -np.inf)
+        # Where nothing limits the pressure, no gap is below the lowest, so that no work is added.
+        self.most = np.where(finite, self.limit, 1.0)
+        self.lowest = np.where(finite, table.gap_at(self.most), -np.inf)
         self.least = np.full(base.shape, np.inf) if least is None else least
         self.branch = None if least is None else Branch.of(table, np.minimum(least, table.touch))
         # A patch that is loaded again first returns to its deepest state.
@@ -150,9 +153,8 @@ class PatchNodes:
         gap = self.base + u
         inside = np.maximum(gap, self.lowest)
         energy, p, slope = self.table.work(inside)
-        energy -= self.lost
         below = inside - gap
-        energy = energy + self.limit * below if np.isfinite(self.limit).all() else energy
+        energy += self.most * below - self.lost
         slope = np.where(below > 0, 0.0, slope)
         if self.branch is not None and (back := gap >= self.least).any():
             for new, old in zip(self.branch.at(gap), (energy, p, slope), strict=True):

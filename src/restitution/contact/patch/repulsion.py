@@ -139,23 +139,19 @@ class RepulsionTable:
 
     def of_gap(self, values: Array, gap: Array) -> Array:
         """One of the arrays of the table, at each `gap` (m)."""
-        at = (np.asarray(gap) - self.pressure.first) / self.pressure.step
-        return np.asarray(np.interp(at, np.arange(values.size), values))
+        return self.pressure.linear(values, gap)
 
     def gap_at(self, pressure: Array | float) -> Array:
         """Gap (m) at which loading reaches `pressure` (Pa, positive)."""
         p = self.pressure
-        gap = np.interp(
-            pressure, p.values[::-1], (p.first + p.step * np.arange(p.values.size))[::-1]
-        )
+        gap = np.interp(pressure, p.values[::-1], p.points[::-1])
         _, least, slope = p(np.asarray(p.first))
         beyond = np.maximum(np.asarray(pressure) - least, 0.0)
         return np.asarray(gap + beyond / np.minimum(slope, -1e-300))
 
 
 def _work(pressure: Tabulated, gap: Array) -> tuple[Array, Array, Array]:
-    total = pressure(np.asarray(pressure.last))[0]
     inside = np.minimum(gap, pressure.last)
     integral, p, slope = pressure(inside)
     touching = gap < pressure.last
-    return total - integral, np.where(touching, p, 0.0), np.where(touching, slope, 0.0)
+    return pressure.whole - integral, np.where(touching, p, 0.0), np.where(touching, slope, 0.0)

@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 
 from restitution.arguments import typed
+from restitution.contact.bodies import Pair
 from restitution.contact.checks.edge import require_inside_grid
 from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import RESIDUAL
@@ -43,15 +44,11 @@ def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None 
         DomainError: The contact reaches the edge of the grid.
         NotConvergedError: The loading work jumps past ½ m* V², or a solve did not converge.
     """
-    mass = contact.pair.mass
-    if mass is None:
-        raise CaseError("density: is missing; an impact velocity needs the density of both bodies")
+    mass = mass_in_impact(contact.pair, velocity)
     if contact.periodic:
         raise CaseError(
             "velocity: the bodies of a periodic contact have infinite mass; call solve()"
         )
-    if not 0 < velocity < math.inf:
-        raise CaseError(f"velocity: {velocity} m/s is not positive")
     work = 0.5 * mass * velocity**2
     integrated = interface_of(contact).integrates_work(contact)
     tolerance = _INTEGRATED_TOLERANCE if integrated else VELOCITY_TOLERANCE
@@ -70,6 +67,15 @@ def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None 
     return replace(
         state, convolutions=sum(solved.convolutions for solved in search.states.values())
     )
+
+
+def mass_in_impact(pair: Pair, velocity: float) -> float:
+    """Reduced mass (kg); raises `CaseError` without it, or if `velocity` (m/s) is not positive."""
+    if pair.mass is None:
+        raise CaseError("density: is missing; an impact velocity needs the density of both bodies")
+    if not 0 < velocity < math.inf:
+        raise CaseError(f"velocity: {velocity} m/s is not positive")
+    return pair.mass
 
 
 class _Search:
