@@ -56,14 +56,15 @@ def measure(name: str) -> dict[str, float]:
     import tempfile
     import time
 
+    from restitution.case.case import Case
     from restitution.case.case_file import parse_case
-    from restitution.case.interface import InterfaceTable
     from restitution.results.writer import ResultsFolder
     from restitution.runs.convergence import run_convergence
     from restitution.runs.run import run_case
 
     template, hardness, nodes, spacing, grids = CASES[name]
-    if "adhesion" in InterfaceTable.model_fields:  # older versions only have the model "jkr"
+    keys = Case.model_fields["interface"].annotation.model_fields
+    if "adhesion" in keys:  # older versions only have the model "jkr"
         template = template.replace("[interface]\n", '[interface]\nadhesion = "jkr"\n')
     text = "total_error = false\n" + template.format(
         hardness=hardness, nodes=nodes, spacing=spacing

@@ -2,7 +2,7 @@
 
     LD_LIBRARY_PATH=.venv/lib python -m benchmarks.contact
 
-Writes contact.md. Smallest of five runs; processor time, in LAMMPS (one process) wall time.
+Writes contact.md.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
+from benchmarks.unit import machine, today
 from evidence.codes.laws import ROUGH, STICKY, law_of_case
 from restitution.dem.export import export, write_export
 
@@ -93,6 +94,7 @@ def lammps(tangential: str) -> float:
 
 if __name__ == "__main__":
     os.environ["OMP_NUM_THREADS"] = "1"
+    about = machine()
     rows = [
         ("contact in C, dry rough law, GCC", contact(ROUGH, "gcc")),
         ("contact in C, dry rough law, Clang", contact(ROUGH, "clang")),
@@ -107,8 +109,9 @@ if __name__ == "__main__":
         ),
     ]
     text = (
-        "# The portable contact\n\n"
-        "Time of one call of `restitution_normal`, beside one pair in LAMMPS.\n\n"
+        f"# The portable contact\n\n{today()}, {about}. Written by `benchmarks/contact.py`.\n\n"
+        "Processor time of one call of `restitution_normal`, the smallest of five runs, beside one "
+        "pair in LAMMPS, the smallest of five.\n\n"
     )
     text += "| | ns |\n|---|---|\n" + "".join(f"| {name} | {ns:.0f} |\n" for name, ns in rows)
     Path(__file__).with_suffix(".md").write_text(text)

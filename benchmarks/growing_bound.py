@@ -59,7 +59,7 @@ repeats (smallest and largest in brackets).
 |---|---|---|---|---|
 {rows}
 
-With the bound that grows, each depth of loading needs a second solve (`contact/cavity.py`). This
+With the bound that grows, each depth of loading needs a second solve (`contact/plasticity/cavity.py`). This
 solve computes the elastic contact at twice the depth. It ends when the root mean square of the
 residual is below 5e-5 of the largest overlap. These contacts have no adhesion, so the unloading
 work is the elastic energy. With either bound, unloading therefore takes no solve.

@@ -11,24 +11,25 @@ PREVIEW = re.compile(r"^preview: 3 of 6 depths, cells of 250 nm")
 ADHESION = "#field-interface-work_of_adhesion"
 
 
-def cut(page, kept):
-    """Let the page receive only the lines of a curve that `kept` returns."""
-
-    def pass_on(route):
-        answer = route.fetch(timeout=0)
-        lines = kept([json.loads(line) for line in answer.text().splitlines()])
-        route.fulfill(response=answer, body="".join(json.dumps(line) + "\n" for line in lines))
-
-    page.route("**/api/curve", pass_on)
+@pytest.fixture(scope="module")
+def answer():
+    """The lines of the adhesive curve, which the server computes once."""
+    return []
 
 
 @pytest.fixture
-def adhesive(page):
-    """Begin the adhesive curve of which the page receives only some lines."""
+def adhesive(page, answer):
+    """Begin the adhesive curve of which the page receives only the lines that `kept` returns."""
+
+    def pass_on(route, kept):
+        if not answer:
+            text = route.fetch(timeout=0).text()
+            answer.extend(json.loads(line) for line in text.splitlines())
+        route.fulfill(body="".join(json.dumps(line) + "\n" for line in kept(answer)))
 
     def begun(kept):
         computed(page)
-        cut(page, kept)
+        page.route("**/api/curve", lambda route: pass_on(route, kept))
         page.locator(ADHESION).fill("0.05 J/m^2")
         return page
 

@@ -82,7 +82,7 @@ def test_the_commented_lines_of_a_case_with_a_scan_are_valid(cli, tmp_path):
     table = text[begin:end].replace("[roughness]", "[[roughness]]", 1)
     file.write_text(text[:begin] + 2 * table + text[end:])
     case = read_case(file)[0]
-    assert case.interface.yield_strength == approx(2030e6)
+    assert case.interface.yield_strength == approx(3300e6)
     assert (len(case.roughness), case.grid.nodes) == (2, (256, 256))
 
 

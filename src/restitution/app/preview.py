@@ -13,11 +13,10 @@ import numpy as np
 from restitution.case.case import Case
 from restitution.contact.checks.resolution import NODES_PER_RADIUS, predicted_radius
 from restitution.contact.contact import Contact
-from restitution.contact.models import COMPANION
 from restitution.curve.follow import Load, Unloading
 from restitution.display import quantity
+from restitution.runs.companions import coarser_contact
 from restitution.runs.depths import CaseUnloading, first_touch, load_to
-from restitution.surfaces.refine import coarsen
 
 _FEWEST_NODES, _FEWEST_DEPTHS = 32, 3  # of the coarsest level, along an edge of the grid
 _FEWEST_PER_RADIUS = 4  # nodes in the radius of a contact with the fewest depths
@@ -51,9 +50,6 @@ class Ladder:
             # The relative error of COR is half that of the work.
             rough = contact.adhesion.with_work_tolerance(2 * _ERROR)
             contact = replace(contact, adhesion=rough)
-        # A contact whose cells are too large for its adhesion is refused without this key.
-        provenance = {**contact.surface.provenance, COMPANION: True}
-        contact = replace(contact, surface=replace(contact.surface, provenance=provenance))
         # The contact on cells that are larger by the factors 1, 2, 4, …
         self.case, self._contacts = case, [contact]
         deep = {depth: case.indentation_at(depth) for depth in case.depths()}
@@ -116,8 +112,7 @@ class Ladder:
     def _coarser(self, factor: int) -> Contact:
         """The contact on cells `factor` times as large, a power of two."""
         while 2 ** (len(self._contacts) - 1) < factor:
-            last = self._contacts[-1]
-            self._contacts.append(replace(last, surface=coarsen(last.surface)))
+            self._contacts.append(coarser_contact(self._contacts[-1]))
         return self._contacts[factor.bit_length() - 1]
 
 
