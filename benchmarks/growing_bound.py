@@ -59,10 +59,10 @@ repeats (smallest and largest in brackets).
 |---|---|---|---|---|
 {rows}
 
-With the bound that grows, each depth of loading needs a second solve (`contact/plasticity/cavity.py`). This
-solve computes the elastic contact at twice the depth. It ends when the root mean square of the
-residual is below 5e-5 of the largest overlap. These contacts have no adhesion, so the unloading
-work is the elastic energy. With either bound, unloading therefore takes no solve.
+With the bound that grows, each depth of loading needs a second solve
+(`contact/plasticity/cavity.py`): the elastic contact at twice the depth, to a residual (root mean
+square) of 5e-5 of the largest overlap. These contacts have no adhesion, so the unloading work is
+the elastic energy, and unloading takes no solve.
 """
 
 
