@@ -153,8 +153,9 @@ class CohesiveLaw(Adhesion):
         reached: Callable[[State], bool],
         ahead: Callable[[State, float], float],
         start: State | None,
+        scale: float,
     ) -> tuple[State, State] | None:
-        return load_until(contact, reached, ahead, start=start, residual=RESIDUAL)
+        return load_until(contact, reached, ahead, start=start, residual=RESIDUAL, scale=scale)
 
     def unload(
         self, state: State, *, steps: int, tolerance: float, residual: float, known: Sequence[State]
