@@ -141,7 +141,9 @@ def test_errors_come_from_grid_surfaces_and_materials():
         class case:  # noqa: N801
             roughness = (1,)
 
-        own = WorkCurve(np.array([1.0, 10.0]), np.array([0.5, 5.0]), np.array([2.0, 2.0]))
+        own = reference = WorkCurve(
+            np.array([1.0, 10.0]), np.array([0.5, 5.0]), np.array([2.0, 2.0])
+        )
 
         def others(self):
             flat = np.array([1.0, 10.0])

@@ -15,7 +15,7 @@ from restitution.curve.work_curve import WorkCurve
 from restitution.errors import NotConvergedError
 from restitution.results.writer import ResultsFolder
 from restitution.runs import depths as depths_module
-from restitution.runs.companions import Companions, curve_of
+from restitution.runs.companions import Companions, coarser_contact, curve_of
 from restitution.runs.convergence import run_convergence
 from restitution.runs.ensemble import run_realisations
 from restitution.runs.error_budget import (
@@ -133,7 +133,7 @@ def test_an_elastic_contact_counts_what_a_lower_yield_pressure_would_change():
     class Falling:
         """COR falls by 0.1 with the yield pressure, at any work."""
 
-        own = impact(0.9)
+        reference = impact(0.9)
         coarse = SimpleNamespace(pair=SimpleNamespace(contact_modulus=1e11))
 
         def weaker(self, factors):
@@ -358,3 +358,36 @@ def test_another_body_may_be_the_softer_one_at_an_end_of_the_spread(tmp_path):
     rows, _ = run(text, tmp_path / "out")
     assert rows[0]["material_error"] > 0
     assert rows[0]["total_error"] >= rows[0]["material_error"] - 1e-12
+
+
+COHESIVE = """\
+first = { material = "silica", radius = "2 um" }
+[interface]
+work_of_adhesion = "0.05 J/m^2"
+yield_pressure = "1.5 GPa"
+adhesion = "cohesive"
+[roughness]
+kind = "gaussian"
+rms = "0.6 nm"
+correlation_length = "30 nm"
+seed = 1
+[grid]
+nodes = 64
+spacing = "3 nm"
+[indentation]
+values = ["1 nm"]
+"""
+
+
+def test_other_curves_of_a_cohesive_contact_are_compared_at_the_same_impacts(tmp_path):
+    """Three impacts of five give the scatter, close to that with all of them."""
+    companions = Companions(parse_case(COHESIVE), tmp_path, [1e-9, 1.5e-9, 2e-9, 2.5e-9, 3e-9])
+    work = companions.own.work[-6:-1]
+    assert companions.reference.work == approx(work[::2], rel=1e-12)
+    assert companions.weaker(np.ones(5)) is companions.reference
+    contact = coarser_contact(companions.case.variant(1).contact(tmp_path))
+    other, full = companions.curve(contact), curve_of(contact, companions.depths, "path")
+    assert other.work[0] < work[0] < work[-1] <= other.work[-1]
+    assert other.at(work) == approx(full.at(work), abs=0.01)
+    assert other.ratio(work) == approx(full.ratio(work), abs=0.02)
+    assert other.pull_off_at(work) == approx(full.pull_off_at(work), rel=0.08)

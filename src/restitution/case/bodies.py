@@ -174,7 +174,7 @@ class BodyTable(Table):
             }
         if self._ratio is not None and self.hardness is not None:
             known_hardness = values.get("hardness")
-            spread = known_hardness and (known_hardness.low, known_hardness.high)
+            spread = (known_hardness.low, known_hardness.high) if known_hardness else None
             own = strength(self.hardness, self._ratio, spread)
             values |= {"yield_strength": own} if own.value == self.yield_strength else {}
         return values

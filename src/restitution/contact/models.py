@@ -234,10 +234,12 @@ class Adhesion(ABC):
         reached: Callable[[State], bool],
         ahead: Callable[[State, float], float],
         start: State | None,
+        scale: float,
     ) -> tuple[State, State] | None:
         """Last state of loading that is not `reached` and the first that is; None: no path.
 
-        `ahead` estimates the distance (m) left from a state and the stiffness there (N/m).
+        `ahead` estimates the distance (m) left from a state and the stiffness there (N/m). `scale`
+        is an energy (J) of which the error of a step may be a fraction; 0 for that of the step.
         """
         return None
 

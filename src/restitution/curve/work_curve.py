@@ -44,12 +44,15 @@ class WorkCurve:
     def ratio(self, work: Array) -> Array:
         """Ratio of unloading to loading work at `work` (J), negative where the bodies stick.
 
-        The energy loss is interpolated linearly in ln(work), and constant beyond the ends.
+        The energy loss is interpolated as by `at`, and constant beyond the ends.
         """
         if not self.work.size:
             return np.full(np.shape(work), math.nan)
-        lost = self.work - self.unloading_work
-        return np.asarray(1 - np.interp(np.log(work), np.log(self.work), lost) / work)
+        inside = np.clip(work, self.work[0], self.work[-1])
+        lost = self._loss(inside)
+        if lost is None:
+            lost = np.interp(np.log(inside), np.log(self.work), self.work - self.unloading_work)
+        return np.asarray(1 - lost / work)
 
     def pull_off_at(self, work: Array) -> Array:
         """Pull-off force (N) at `work` (J): linear in ln(work), constant beyond the ends."""
@@ -67,9 +70,17 @@ class WorkCurve:
 
         if self.work.size < 2:
             return np.full(np.shape(work), self.restitution[0] if self.work.size else math.nan)
-        at, inside = np.log(self.work), np.clip(work, self.work[0], self.work[-1])
+        inside = np.clip(work, self.work[0], self.work[-1])
+        lost = self._loss(inside)
+        if lost is not None:
+            return np.asarray(np.sqrt(np.maximum(1 - lost / inside, 0.0)))
+        return np.asarray(PchipInterpolator(np.log(self.work), self.restitution)(np.log(inside)))
+
+    def _loss(self, work: Array) -> Array | None:
+        """Energy loss (J) between the ends; None if it is not known or vanishes at an impact."""
+        from scipy.interpolate import PchipInterpolator
+
         lost = self.work - self.unloading_work
-        if np.all(lost > _LOSSLESS * self.work):
-            loss = np.exp(PchipInterpolator(at, np.log(lost))(np.log(inside)))
-            return np.asarray(np.sqrt(np.maximum(1 - loss / inside, 0.0)))
-        return np.asarray(PchipInterpolator(at, self.restitution)(np.log(inside)))
+        if self.work.size < 2 or np.any(lost <= _LOSSLESS * self.work):
+            return None
+        return np.asarray(np.exp(PchipInterpolator(np.log(self.work), np.log(lost))(np.log(work))))

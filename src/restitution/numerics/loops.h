@@ -6,6 +6,7 @@
 
 #include "diffusion.h"
 #include "multipoles.h"
+#include "newton.h"
 #include "quadratic/fused_ops.h"
 #include "quadratic/grid_transfer.h"
 #include "quadratic/local_mean.h"
@@ -13,6 +14,7 @@
 template <class T>
 void define_for(py::module_& module) {
     define_reductions<T>(module);
+    define_newton<T>(module);
     define_fused_ops<T>(module);
     define_local_mean<T>(module);
 }
@@ -22,5 +24,6 @@ inline void define_loops(py::module_& module) {
     define_for<double>(module);
     define_grid_transfer(module);
     define_multipoles(module);
+    define_lennard_jones(module);
     define_diffusion(module);
 }

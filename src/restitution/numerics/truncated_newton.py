@@ -15,7 +15,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from restitution.numerics.convolution.operators import Array, Convolution
-from restitution.numerics.expressions import dot
+from restitution.numerics.expressions import (
+    add_curvature,
+    advance,
+    dot,
+    largest_ratio,
+    redirect,
+)
 
 # Function of the unknowns u that returns the potential φ of each node, and its derivatives φ′ and
 # φ″.
@@ -82,14 +88,15 @@ def minimise_locally(
         if zero_mean:
             p = p - r.mean()
             r -= r.mean()
-        residual = float(np.max(np.abs(r) / (np.abs(k) + 1 / K.diagonal)))
+        residual = largest_ratio(r, k, 1 / K.diagonal)
         if residual <= tolerance or steps >= MOST_STEPS:
             break
         steps += 1
         h = k if secant is None else secant(u, p, slope, k)
-        x, Sx, at_edge, bent = _newton_step(K, r, h, energy, (radius, length), zero_mean=zero_mean)
+        x, Sx, predicted, at_edge, bent = _newton_step(
+            K, r, h, energy, (radius, length), zero_mean=zero_mean
+        )
         negative |= bent
-        predicted = dot(r, x) + 0.5 * dot(x, Sx + h * x)
         size = math.sqrt(max(dot(x, Sx), 0.0))
         new_p = p + Sx
         new_u = K(new_p)  # in double precision; the products within a step are in single precision
@@ -118,19 +125,20 @@ def _newton_step(
     limits: tuple[float, float],
     *,
     zero_mean: bool,
-) -> tuple[Array, Array, bool, bool]:
+) -> tuple[Array, Array, float, bool, bool]:
     """Solve (K⁻¹ + k) x = −r approximately, with the gradient r and k = φ″.
 
     `limits` are the radius of the trust region in the norm (xᵀK⁻¹x)^½, infinite if there is none
     yet, and the largest change of u along a direction of negative curvature while there is none.
     Everything is in single precision, which is far more accurate than the step is exact.
-    Return x, K⁻¹x, whether one of the limits ended the step, and whether a direction had negative
-    curvature.
+    Return x, K⁻¹x, the change of energy that the linear system predicts, whether one of the limits
+    ended the step, and whether a direction had negative curvature.
     """
     radius, length = limits
     k = k.astype(np.float32)
     rest = np.negative(r, dtype=np.float32)
-    x, Sx, Hd, scaled = (np.zeros_like(rest) for _ in range(4))
+    start = rest.copy()
+    x, Sx, Hd = (np.zeros_like(rest) for _ in range(3))
     z, d, Sd = np.empty_like(rest), np.empty_like(rest), rest.copy()
     K.single_precision(rest, out=d)
     rz = first = dot(rest, d)
@@ -139,9 +147,7 @@ def _newton_step(
     inside = math.isinf(radius)  # no trust region yet
     xSd = xSx = dSd = 0.0
     for _ in range(_MOST_ITERATIONS):
-        np.multiply(k, d, out=Hd)
-        Hd += Sd
-        dHd = dot(d, Hd)
+        dHd = add_curvature(d, Sd, k, Hd)
         if not inside:
             dSd, xSd = dot(d, Sd), dot(x, Sd)
         bent = dHd <= 0
@@ -152,19 +158,20 @@ def _newton_step(
                 a = length / float(np.abs(d).max())
             else:
                 a = (math.sqrt(max(xSd * xSd + dSd * (radius**2 - xSx), 0.0)) - xSd) / dSd
-            return x + a * d, Sx + a * Sd, True, bent
+            advance(x, Sx, rest, d, Sd, Hd, a)
+            return x, Sx, _predicted(x, start, rest), True, bent
         xSx = along
-        x += np.multiply(d, a, out=scaled)
-        Sx += np.multiply(Sd, a, out=scaled)
-        rest -= np.multiply(Hd, a, out=scaled)
+        advance(x, Sx, rest, d, Sd, Hd, a)
         if zero_mean:  # K ignores the mean, which would only increase rounding errors
             rest -= rest.mean()
         K.single_precision(rest, out=z)
         before, rz = rz, dot(rest, z)
         if rz <= forcing**2 * first:
             break
-        d *= rz / before
-        d += z
-        Sd *= rz / before
-        Sd += rest
-    return x, Sx, False, False
+        redirect(d, Sd, z, rest, rz / before)
+    return x, Sx, _predicted(x, start, rest), False, False
+
+
+def _predicted(x: Array, start: Array, rest: Array) -> float:
+    """Change of the quadratic energy from 0 to x, where its negative gradient is `rest`."""
+    return -0.5 * (dot(x, start) + dot(x, rest))

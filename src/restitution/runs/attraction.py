@@ -119,8 +119,8 @@ def curve_errors(
     One error due to the grid, one due to scatter between surfaces (if `scattered` and the bodies
     are rough), and one for each kind of library value with a spread.
     """
-    own = quantity_of(companions.own)
-    errors = [np.abs(here - own)]
+    errors = [np.abs(here - quantity_of(companions.own))]
+    own = quantity_of(companions.reference)
     if companions.case.roughness and scattered:
         values = np.array([own, *map(quantity_of, companions.others())])
         half = half_interval(len(values)) * values.std(axis=0, ddof=1)

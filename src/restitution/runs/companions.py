@@ -3,12 +3,14 @@
 All are computed on cells twice as large, in about a fifth of the time of the run. The first has the
 surface and the materials of the run, and is compared with the run; the others have another surface
 or other materials, and are compared with the first. COR is compared at equal impact velocity.
+
+Where each unloading follows a path, the others have up to three impacts; only these are compared.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from pathlib import Path
@@ -24,11 +26,12 @@ from restitution.contact.bodies import Pair
 from restitution.contact.contact import Contact, smooth
 from restitution.contact.interface import interface_of
 from restitution.contact.loading import solve
-from restitution.contact.models import COMPANION
+from restitution.contact.models import COMPANION, RESTITUTION_ERROR
 from restitution.contact.patch.law import PatchLaw, law_of_patches
+from restitution.contact.prescribed.velocity import path_around_work
 from restitution.contact.state import State
 from restitution.curve.columns import Array
-from restitution.curve.follow import Load, Unloading, follow
+from restitution.curve.follow import Impact, Load, Unloading, follow
 from restitution.curve.work_curve import WorkCurve
 from restitution.errors import CaseError, DomainError, RestitutionError
 from restitution.numerics.intervals import half_interval
@@ -43,6 +46,7 @@ _TOLERANCE = 0.005  # allowed error of COR due to the steps of adhesive unloadin
 # the largest depth times the second factor. They are needed because other surfaces reach the same
 # loading work at other depths.
 _SHALLOWER, _DEEPER = 0.5, 1.3
+_MOST_PATHS = 3  # largest number of impacts of other companion curves that follow a path
 
 # Error of a bound that grows if patches have one of their own, beside that of a fine grid.
 _OF_GROWTH = 0.08
@@ -59,16 +63,12 @@ def curve_of(
     `tolerance` is the allowed error of COR due to the steps of adhesive unloading. A depth that
     cannot be solved is left out. The curve ends where the contact reaches the edge of the grid.
     """
-    return _curve_of([contact] * len(depths), depths, method, tolerance)
+    loads = _loads([contact] * len(depths), depths)
+    return _curve_of(_impacts(loads, method, tolerance))
 
 
-def _curve_of(
-    contacts: Sequence[Contact],
-    depths: Sequence[float],
-    method: UnloadingMethod,
-    tolerance: float = _TOLERANCE,
-) -> WorkCurve:
-    loads = [
+def _loads(contacts: Sequence[Contact], depths: Sequence[float]) -> list[Load]:
+    return [
         Load(contact, partial(_solve, contact, depth), depth)
         for contact, depth in zip(
             (contacts[0], *contacts, contacts[-1]),
@@ -76,7 +76,15 @@ def _curve_of(
             strict=True,
         )
     ]
-    impacts = follow(loads, Unloading(method, tolerance=tolerance), _failed)
+
+
+def _impacts(
+    loads: Sequence[Load], method: UnloadingMethod, tolerance: float = _TOLERANCE
+) -> list[Impact]:
+    return list(follow(loads, Unloading(method, tolerance=tolerance), _failed))
+
+
+def _curve_of(impacts: Iterable[Impact]) -> WorkCurve:
     return WorkCurve.of(impact.collision for impact in impacts)
 
 
@@ -87,6 +95,20 @@ def _failed(error: RestitutionError) -> bool:
 def _solve(contact: Contact, depth: float, start: State | None) -> State:
     # Only a loading path is long enough to be worth continuing.
     return solve(contact, depth, start=start if interface_of(contact).follows_path else None)
+
+
+def _around(contact: Contact, works: Sequence[float]) -> list[Load]:
+    """Loads on a path to below the first of `works` (J), beyond the last, and near the others."""
+    first, *others = works
+    ends = [(first, 0), *((work, 1) for work in others or works)]
+
+    def to(work: float, side: int, start: State | None) -> State:
+        scale = _TOLERANCE / RESTITUTION_ERROR * work
+        path = path_around_work(contact, work, start=start, scale=scale)
+        assert path is not None
+        return path[side]
+
+    return [Load(contact, partial(to, work, side), work) for work, side in ends]
 
 
 @dataclass(frozen=True)
@@ -114,7 +136,7 @@ class ScaleCurves:
         if coarse.plasticity.grows:
             weak = replace(coarse, plasticity=coarse.plasticity.scaled(1 - _OF_GROWTH))
             weaker = companions.curve(weak)
-        return cls(companions.own, tuple(single), weaker, how.nodes * how.cell)
+        return cls(companions.reference, tuple(single), weaker, how.nodes * how.cell)
 
     def error(self, quantity_of: Callable[[WorkCurve], Array], area: Array | float) -> Array:
         """Error of a quantity due to the scatter of patches, and to a bound that grows.
@@ -148,15 +170,28 @@ class Companions:
 
     @cached_property
     def own(self) -> WorkCurve:
-        return self._curve(self.coarse)
+        """The curve of `coarse`."""
+        return _curve_of(self._own_impacts)
+
+    @cached_property
+    def reference(self) -> WorkCurve:
+        """The impacts of `own` with which those of other curves are compared."""
+        return _curve_of(self._compared) if self._follows_paths else self.own
 
     def weaker(self, factors: Array) -> WorkCurve:
         """The curve of `coarse` with its yield limit times `factors`, one for each depth."""
         coarse = self.coarse
-        lowered = [replace(coarse, plasticity=coarse.plasticity.scaled(f)) for f in factors]
-        if all(contact == coarse for contact in lowered):
-            return self.own
-        return _curve_of(lowered, self.depths, self.case.unloading.method)
+        depths = self.depths
+        if self._follows_paths:
+            depths = [impact.load.prescribed for impact in self._compared]
+        lowered = [
+            replace(coarse, plasticity=coarse.plasticity.scaled(factor))
+            for factor, depth in zip(factors, self.depths, strict=True)
+            if depth in depths
+        ]
+        if not lowered or all(contact == coarse for contact in lowered):
+            return self.reference
+        return _curve_of(_impacts(_loads(lowered, depths), self.case.unloading.method))
 
     def others(self, progress: Say = ignore) -> list[WorkCurve]:
         """Curves of other surfaces of the same kind (other seeds or places of the scan)."""
@@ -200,8 +235,7 @@ class Companions:
         and density. The values of both bodies are set to the low, then to the high end; the larger
         change counts.
         """
-        coarse = self.coarse
-        here, mass = self.own.at(work), coarse.pair.mass
+        here, mass = self.reference.at(work), self.coarse.pair.mass
         changes = []
         for ends in self.material_ends():
             low, high = (np.abs(self.curve(contact).at(work) - here) for contact in ends)
@@ -209,7 +243,8 @@ class Companions:
         masses = [case.pair().mass for case in self._ends]
         if mass is not None and any(m != mass for m in masses):
             moved = [self.own.at(work * m / mass) for m in masses if m is not None]
-            changes.append(np.max([np.abs(values - here) for values in moved], axis=0))
+            change = [np.abs(values - self.own.at(work)) for values in moved]
+            changes.append(np.max(change, axis=0))
         return changes
 
     def material_ends(self) -> list[tuple[Contact, Contact]]:
@@ -254,7 +289,23 @@ class Companions:
 
     @cached_property
     def _curves(self) -> list[tuple[Contact, WorkCurve]]:
-        return [(self.coarse, self.own)]
+        return [(self.coarse, self.reference)]
+
+    @cached_property
+    def _own_impacts(self) -> list[Impact]:
+        loads = _loads([self.coarse] * len(self.depths), self.depths)
+        return _impacts(loads, self.case.unloading.method)
+
+    @property
+    def _follows_paths(self) -> bool:
+        return interface_of(self.coarse).follows_path and self.case.unloading.method == "path"
+
+    @property
+    def _compared(self) -> list[Impact]:
+        """The first impact of `_own_impacts` at `depths`, the last, and one in the middle."""
+        known = [impact for impact in self._own_impacts if impact.load.prescribed in self.depths]
+        at = np.linspace(0, len(known) - 1, min(_MOST_PATHS, len(known)))
+        return [known[round(k)] for k in at]
 
     @cached_property
     def _others(self) -> list[WorkCurve]:
@@ -275,7 +326,12 @@ class Companions:
         return coarser_contact(contact)
 
     def _curve(self, contact: Contact) -> WorkCurve:
-        return curve_of(contact, self.depths, self.case.unloading.method)
+        method = self.case.unloading.method
+        if self._follows_paths:
+            works = [impact.collision.loading_work for impact in self._compared]
+            works = [work for work in works if work > 0]
+            return _curve_of(_impacts(_around(contact, works), method) if works else ())
+        return curve_of(contact, self.depths, method)
 
 
 def coarser_contact(contact: Contact) -> Contact:

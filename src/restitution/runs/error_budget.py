@@ -100,7 +100,7 @@ def unseen_yield(companions: Companions, waves: OmittedWaves, points: Sequence[P
         for point in sorted(points, key=lambda point: point.indentation)
     ]
     weaker = companions.weaker(np.array(ratios))
-    change = companions.own.at(work) - weaker.at(work)
+    change = companions.reference.at(work) - weaker.at(work)
     return np.asarray((stored / (stored + plastic)) ** 2 * change)
 
 
@@ -171,7 +171,9 @@ def spread_errors(
     columns = {}
     if case.roughness and scattered:
         others = [curve.at(work) for curve in companions.others(progress)]
-        columns["surface_scatter"] = scatter(np.array([companions.own.at(work), *others]), work)
+        columns["surface_scatter"] = scatter(
+            np.array([companions.reference.at(work), *others]), work
+        )
     if case.has_library_values():
         progress("error: materials")
         changes = companions.materials(work)

@@ -38,7 +38,7 @@ def material_parts(companions: Companions, work: Array) -> list[MaterialPart]:
     ]
     if (w := case.library_adhesion()) is not None:
         pair = " on ".join(str(table.material) for table in case.bodies().values())
-        here = companions.own.at(work)
+        here = companions.reference.at(work)
         ends = [companions.curve(contact).at(work) - here for contact in companions.adhesion_ends]
         parts.append(_part("interface.work_of_adhesion", pair, w, np.max(np.abs(ends), axis=0)))
     return parts
@@ -56,7 +56,7 @@ def _change(companions: Companions, work: Array, body: str, key: str) -> Array:
 
 
 def _changes(companions: Companions, work: Array, body: str, key: str) -> Iterator[Array]:
-    here, coarse = companions.own.at(work), companions.coarse
+    here, coarse = companions.reference.at(work), companions.coarse
     for end in ENDS:
         case = moved(companions.case, end, body, key)
         mass, own_mass = case.pair().mass, coarse.pair.mass
@@ -65,7 +65,8 @@ def _changes(companions: Companions, work: Array, body: str, key: str) -> Iterat
         elif key in _STRENGTHS:
             yield companions.curve(companions.with_yield_of(case)).at(work) - here
         elif mass is not None and own_mass is not None:
-            yield companions.own.at(work * mass / own_mass) - here
+            own = companions.own
+            yield own.at(work * mass / own_mass) - own.at(work)
         else:
             yield np.zeros(work.size)
 
@@ -79,4 +80,4 @@ def _elastic_change(companions: Companions, work: Array, contact_modulus: float)
     if span == 0:
         return np.zeros(work.size)
     share = math.log(contact_modulus / own) / span
-    return np.asarray(share * (companions.curve(end).at(work) - companions.own.at(work)))
+    return np.asarray(share * (companions.curve(end).at(work) - companions.reference.at(work)))

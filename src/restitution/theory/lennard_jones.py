@@ -34,12 +34,13 @@ class LennardJones(PositiveFields):
         """Attractive force per area σ (Pa)."""
         x = self._ratio(gap)
         scale = 8 * self.work_of_adhesion / (3 * self.equilibrium_separation)
-        return scalar_or_array(scale * x**3 * (1 - x**6))
+        x3 = x * x * x  # x**3 takes ten times as long
+        return scalar_or_array(scale * x3 * (1 - x3 * x3))
 
     def energy(self, gap: Values) -> Array:
         """Interaction energy −∫σ dg per area (J/m²), −w at z₀, 0 at infinity."""
         x2 = self._ratio(gap) ** 2
-        return scalar_or_array(-self.work_of_adhesion * x2 * (4 - x2**3) / 3)
+        return scalar_or_array(-self.work_of_adhesion * x2 * (4 - x2 * x2 * x2) / 3)
 
     @property
     def largest_traction(self) -> Array:

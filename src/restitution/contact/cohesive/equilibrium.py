@@ -109,11 +109,14 @@ class BoundedLaw:
     def __call__(self, u: Array) -> tuple[Array, Array, Array]:
         """Return energy (J/m²), attraction (Pa) and stiffness (Pa/m) at the displacement `u`."""
         gap = self.base + u
-        below = np.minimum(gap - self.least, 0.0)
-        energy, slope, stiff = self._law.potential(gap - below)
-        energy += below * (self._slope + 0.5 * self._stiff * below)
-        slope += self._stiff * below
-        stiff[below < 0] = self._stiff
+        inside = np.maximum(gap, self.least)
+        energy, slope, stiff = self._law.potential(inside)
+        at = np.flatnonzero(gap < inside)
+        below = gap.ravel()[at] - inside.ravel()[at]
+        limit = np.broadcast_to(self._slope, gap.shape).ravel()[at]
+        energy.ravel()[at] += below * (limit + 0.5 * self._stiff * below)
+        slope.ravel()[at] += self._stiff * below
+        stiff.ravel()[at] = self._stiff
         return energy, slope, stiff
 
     def secant(self, u: Array, p: Array, slope: Array, stiff: Array) -> Array:

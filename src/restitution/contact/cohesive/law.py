@@ -29,6 +29,7 @@ from restitution.contact.models import (
 )
 from restitution.contact.state import Array, State
 from restitution.errors import CaseError
+from restitution.numerics.expressions import lennard_jones
 from restitution.numerics.quadrature import integrate_adaptively
 from restitution.theory import LennardJones
 
@@ -153,8 +154,9 @@ class CohesiveLaw(Adhesion):
         reached: Callable[[State], bool],
         ahead: Callable[[State, float], float],
         start: State | None,
+        scale: float,
     ) -> tuple[State, State] | None:
-        return load_until(contact, reached, ahead, start=start, residual=RESIDUAL)
+        return load_until(contact, reached, ahead, start=start, residual=RESIDUAL, scale=scale)
 
     def unload(
         self, state: State, *, steps: int, tolerance: float, residual: float, known: Sequence[State]
@@ -266,14 +268,10 @@ class Cohesive(CohesiveLaw):
         return scale * x**4 * (3 * x**6 - 1)
 
     def potential(self, gap: Array) -> tuple[Array, Array, Array]:
+        energy, slope, stiffness = np.empty_like(gap), np.empty_like(gap), np.empty_like(gap)
         w, z0 = self.work_of_adhesion, self.equilibrium_separation
-        x = z0 / gap
-        x2 = x * x
-        x4 = x2 * x2
-        x6 = x4 * x2
-        energy = (-w / 3) * x2 * (4 - x6)
-        slope = (8 * w / (3 * z0)) * (x2 * x) * (1 - x6)
-        return energy, slope, (8 * w / z0**2) * x4 * (3 * x6 - 1)
+        lennard_jones(gap, w, z0, energy, slope, stiffness)
+        return energy, slope, stiffness
 
     def gap_at(self, pressure: Array) -> Array:
         w, z0 = self.work_of_adhesion, self.equilibrium_separation

@@ -60,7 +60,7 @@ def solve_at_force(contact: Contact, force: float, *, start: State | None = None
     def ahead(state: State, stiffness: float) -> float:
         return (force - state.force) / stiffness if stiffness > 0 else math.inf
 
-    path = interface.enclose(contact, lambda state: state.force >= force, ahead, start)
+    path = interface.enclose(contact, lambda state: state.force >= force, ahead, start, 0.0)
     if path is not None:
         start, (low, high) = path[0], (state.indentation for state in path)
     state = start

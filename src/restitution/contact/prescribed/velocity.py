@@ -69,6 +69,26 @@ def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None 
     )
 
 
+def path_around_work(
+    contact: Contact, work: float, *, start: State | None, scale: float = 0.0
+) -> tuple[State, State] | None:
+    """Last state of loading with less than `work` (J), and the next one; None: no path.
+
+    `scale` is that of `Adhesion.enclose`.
+    """
+
+    def reached(state: State) -> bool:
+        return state.loading_work >= work and state.force > 0
+
+    def ahead(state: State, stiffness: float) -> float:
+        left = max(work - state.loading_work, 0.0)
+        if stiffness <= 0:
+            return left / state.force
+        return (math.sqrt(state.force**2 + 2 * stiffness * left) - state.force) / stiffness
+
+    return interface_of(contact).enclose(contact, reached, ahead, start, scale)
+
+
 def mass_in_impact(pair: Pair, velocity: float) -> float:
     """Reduced mass (kg); raises `CaseError` without it, or if `velocity` (m/s) is not positive."""
     if pair.mass is None:
@@ -118,17 +138,8 @@ class _Search:
         Later solves continue from the last state of the path with less work.
         """
 
-        def reached(state: State) -> bool:
-            return state.loading_work >= self._work and state.force > 0
-
-        def ahead(state: State, stiffness: float) -> float:
-            left = max(self._work - state.loading_work, 0.0)
-            if stiffness <= 0:
-                return left / state.force
-            return (math.sqrt(state.force**2 + 2 * stiffness * left) - state.force) / stiffness
-
         contact = self._contact
-        if path := self._interface.enclose(contact, reached, ahead, self._start):
+        if path := path_around_work(contact, self._work, start=self._start):
             self.states.update((state.indentation, state) for state in path)
             return path[1].indentation
         if self._start is not None and (depth := self._step(self._start)) is not None:
