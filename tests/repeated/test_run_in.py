@@ -26,6 +26,7 @@ from restitution import (
     solve_at_velocity,
 )
 from restitution.contact.patch.law import PatchRepulsion
+from restitution.repeated import run_in
 from restitution.repeated.run_in import nominal_area
 from tolerance import approx
 
@@ -85,6 +86,24 @@ def test_the_energy_of_every_impact_balances(plasticity, off):
         assert hit.loading_work == approx(kinetic, rel=off)
         assert hit.unloading_work + hit.plastic_work == approx(hit.loading_work)
         assert hit.unloading_work == approx(hit.restitution**2 * hit.loading_work)
+
+
+@pytest.mark.parametrize("plasticity", [ConstantBound(1e9), ExpandingCavity(4e8)])
+def test_the_depth_of_an_impact_is_expected_from_the_last_one(plasticity, monkeypatch):
+    """So near that the search for it needs few solves."""
+    depths = []
+
+    def recorded(contact, velocity, near):
+        state = solve_at_velocity(contact, velocity, near=near)
+        depths.append((near, state.indentation))
+        return state
+
+    monkeypatch.setattr(run_in, "solve_at_velocity", recorded)
+    runs = RunIn(contact_of(plasticity), seed=3)
+    for _ in itertools.islice(runs.impacts(itertools.cycle([V, 0.5 * V])), 8):
+        pass
+    near, depth = np.array(depths[1:]).T
+    assert near == approx(depth, rel=0.15)
 
 
 def test_the_loading_work_is_the_integral_of_the_force_on_worn_surfaces():
