@@ -4,9 +4,11 @@ import csv
 import io
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
+import tomli_w
 
 from restitution import RestitutionError, open_results, read_surface, run
 from restitution.case.case_file import parse_case
@@ -15,6 +17,7 @@ from restitution.laws.coverage import at_coverage, coverage_of
 from restitution.laws.from_results import bare_law
 from restitution.repeated.points import RepeatedImpact, SteadyState
 from restitution.repeated.velocities import drawn, in_turn, rayleigh
+from restitution.runs.run_in import _bodies
 from tolerance import approx
 
 pytestmark = pytest.mark.filterwarnings("ignore::UserWarning")  # of a coarse grid
@@ -191,6 +194,11 @@ def test_a_steady_state_is_told_from_a_trend():
         ({"roughness": {**CASE["roughness"], "realisations": 3}}, "roughness.realisations"),
         ({"grid": {**CASE["grid"], "refine": "auto"}}, "grid.refine: must be one number"),
         ({"grid": {**CASE["grid"], "nodes": 10}}, "grid.nodes: the grid of 3 µm is too small"),
+        ({"impacts": {"count": 3, "rough": ["first", "both"]}}, 'no "both"'),
+        (
+            {"impacts": {"count": 3, "rough": ["first", "second"]}},
+            "impacts.rough: names 2 bodies for 1 tables",
+        ),
         (
             {"interface": {**CASE["interface"], "plasticity": "truncated"}},
             'interface.plasticity: "truncated" defines a single impact',
@@ -198,16 +206,28 @@ def test_a_steady_state_is_told_from_a_trend():
     ],
 )
 def test_impossible_tables_are_refused_in_one_line(tables, words):
-    import tomli_w
-
     with pytest.raises(RestitutionError, match=words) as refused:
         parse_case(tomli_w.dumps(case(**tables)))
     assert "\n" not in str(refused.value)
 
 
-def test_impacts_need_the_table_impact():
-    import tomli_w
+def test_each_table_of_roughness_is_on_its_body():
+    waves = [{**CASE["roughness"], "rms": f"{rms} nm", "seed": rms} for rms in (3, 5, 8)]
+    own = {"roughness": waves, "impact": {"velocity": "0.2 m/s"}, "total_error": False}
 
+    def rms_of(rough):
+        impacts = {"count": 1, "places": 2, **({"rough": rough} if rough else {})}
+        parsed = parse_case(tomli_w.dumps(case(impacts=impacts, **own)))
+        return [float(surface.height.std()) for surface in _bodies(parsed, Path())]
+
+    assert rms_of(["second", "first", "second"]) == approx([5e-9, math.hypot(3e-9, 8e-9)], rel=0.05)
+    assert rms_of("first")[1] == 0
+    assert rms_of("second")[0] == 0
+    assert rms_of("both") == approx([3e-9, math.hypot(5e-9, 8e-9)], rel=0.05)
+    assert rms_of(None) == rms_of("both")  # two equal bodies
+
+
+def test_impacts_need_the_table_impact():
     tables = {key: table for key, table in CASE.items() if key != "impact"}
     with pytest.raises(RestitutionError, match=r"\[impacts\]: needs \[impact\]"):
         parse_case(tomli_w.dumps({**tables, "indentation": {"values": ["10 nm"]}}))

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from restitution.case.case import Case
-from restitution.case.impacts import ImpactsTable
+from restitution.case.impacts import ImpactsTable, Rough
+from restitution.case.roughness import Roughness
 from restitution.contact.contact import Contact, smooth
 from restitution.contact.models import COMPANION
 from restitution.curve.columns import array
@@ -27,6 +28,7 @@ from restitution.surfaces.refine import coarsen
 OTHERS = 2  # number of additional sequences, on other surfaces, for the scatter
 _OTHER_SURFACE = 500  # added to the seed of the roughness of the second body
 _OTHER_SEED = 1000  # seeds of sequences on other surfaces differ by this number
+Parts = tuple[Roughness, ...]
 _PROBES = 77  # added to the seed of the places at which COR is measured
 
 
@@ -64,7 +66,7 @@ def run_in(
     out.put_run_in(points, tuple(tuple(one.impacts) for one in own))
     return {
         "place": table.place,
-        "rough": _rough(case),
+        "rough": _rough_bodies(case),
         "places": table.places,
         "own_surfaces": table.own_surfaces,
         "coverage_means": "number of impacts times the contact area of smooth bodies, divided by "
@@ -86,15 +88,34 @@ def _velocities(case: Case) -> list[float]:
     return case.impact.series()
 
 
-def _rough(case: Case) -> str:
-    given, yields = _table(case).rough, case.yielding().yields
-    if given is not None:
-        return given
-    bodies = list(case.bodies().values())
+def _parts(case: Case) -> tuple[Parts, Parts] | None:
+    """The tables of roughness of each body; None if each has half of the variance of all."""
+    tables = tuple(case.roughness)
+    words = _table(case).rough or [_default_rough(case)]
+    if words == ["both"]:
+        return (tables[:1], tables[1:]) if len(tables) > 1 else None
+    if len(words) == 1:
+        words = words * len(tables)
+    first, second = (
+        tuple(part for part, word in zip(tables, words, strict=True) if word == body)
+        for body in ("first", "second")
+    )
+    return first, second
+
+
+def _default_rough(case: Case) -> Rough:
+    bodies, yields = list(case.bodies().values()), case.yielding().yields
     equal = bodies[0] == bodies[1] and all(part.kind != "measured" for part in case.roughness)
     if equal and case.roughness:
         return "both"
-    return yields if yields in ("first", "second") else "first"
+    return "second" if yields == "second" else "first"
+
+
+def _rough_bodies(case: Case) -> str:
+    parts = _parts(case)
+    if parts is None or all(parts):
+        return "both"
+    return next((name for name, part in zip(("first", "second"), parts, strict=True) if part), "")
 
 
 def _bodies(case: Case, folder: Path) -> tuple[Surface, Surface]:
@@ -105,19 +126,14 @@ def _bodies(case: Case, folder: Path) -> tuple[Surface, Surface]:
             "roughness.file: opposite edges of the scan do not match, so it does not repeat, as "
             '[impacts] needs; set roughness.extend = "twin"'
         )
-    flat, rough = smooth(whole.grid), _rough(case)
-    if rough == "first":
-        return whole, flat
-    if rough == "second":
-        return flat, whole
-    if len(case.roughness) > 1:
-        first, rest = (
-            case.model_copy(update={"roughness": part}).surface(folder)
-            for part in (case.roughness[:1], case.roughness[1:])
-        )
-        return first, rest
-    other = _variant(case, _OTHER_SURFACE).surface(folder)
-    return _scaled(whole), _scaled(other)
+    parts = _parts(case)
+    if parts is None:
+        return _scaled(whole), _scaled(_variant(case, _OTHER_SURFACE).surface(folder))
+    first, second = (
+        case.model_copy(update={"roughness": part}).surface(folder) if part else smooth(whole.grid)
+        for part in parts
+    )
+    return first, second
 
 
 def _variant(case: Case, number: int) -> Case:
