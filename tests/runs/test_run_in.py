@@ -10,12 +10,13 @@ import numpy as np
 import pytest
 import tomli_w
 
-from restitution import RestitutionError, open_results, read_surface, run
+from restitution import Body, Pair, RestitutionError, open_results, read_surface, run
 from restitution.case.case_file import parse_case
 from restitution.dem.export import export
 from restitution.laws.coverage import at_coverage, coverage_of
 from restitution.laws.from_results import bare_law
 from restitution.repeated.points import RepeatedImpact, SteadyState
+from restitution.repeated.run_in import nominal_area
 from restitution.repeated.velocities import drawn, in_turn, rayleigh
 from restitution.runs.run_in import _bodies
 from tolerance import approx
@@ -135,6 +136,25 @@ def test_one_sequence_may_have_a_distribution_of_velocities():
         (0.1, 6),
         (0.2, 6),
     ]
+
+
+@pytest.mark.parametrize(
+    ("more", "speeds"),
+    [({}, [0.05, 0.15] * 2), ({"weights": [0, 2]}, [0.15] * 4)],
+    ids=["in turn", "weighted"],
+)
+def test_impacts_may_alternate_with_others_or_have_weights(more, speeds):
+    impacts = {"count": 4, "places": 2, "velocity": ["0.05 m/s", "0.15 m/s"], **more}
+    results = run(case(impacts=impacts, total_error=False))
+    (sequence,) = results.impacts
+    assert [hit.velocity for hit in sequence] == speeds
+    covered = [nominal_area(results_pair(), 1e9, V) / 9.6e-6**2 for V in speeds]
+    assert [hit.coverage for hit in sequence] == approx(np.cumsum(covered))
+
+
+def results_pair():
+    ball = Body(50e-6, 210e9, 0.3, 7850)
+    return Pair(ball, ball)
 
 
 def test_velocities_follow_their_distribution():
