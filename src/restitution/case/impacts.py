@@ -9,7 +9,7 @@ from typing import Annotated, Literal, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from restitution.case.quantities import Velocity
-from restitution.case.rulebook import key
+from restitution.case.rulebook import Input, key
 from restitution.case.schema import Table
 from restitution.contact.bodies import Pair
 from restitution.display import quantity
@@ -39,6 +39,11 @@ class ImpactsTable(Table):
         "one coverage or a list, at which COR is measured: number of impacts times the contact "
         "area of smooth bodies, divided by the area of the grid",
         default="required, or `count`",
+        page=Input(
+            "Coverage",
+            "How many times earlier impacts have covered the surface, such as 3; empty: the first "
+            "impact only.",
+        ),
     )
     place: Place = key(
         "random",

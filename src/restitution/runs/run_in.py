@@ -41,12 +41,25 @@ class _Sequence:
     surfaces: tuple[Surface, Surface]
 
 
-def sequences(case: Case) -> int:
-    """Number of sequences of impacts of `case`, those for the error included."""
+def measurements(case: Case) -> int:
+    """Number of coverages at which COR is measured, in all sequences of impacts of `case`."""
     if case.impacts is None or case.impact is None:
         return 0
     count = len(case.impact.series()) if case.impacts.own_surfaces else 1
-    return count * (2 + OTHERS if case.total_error else 1)
+    levels = 1 + len(set(case.impacts.coverage or [0]))
+    return levels * count * (2 + OTHERS if case.total_error else 1)
+
+
+def require_run_in(case: Case, contact: Contact) -> None:
+    """Raise `CaseError` if the surface does not repeat, or the coverages are not possible on it."""
+    if case.impacts is None:
+        return
+    case.impacts.require_possible(contact.grid, _velocities(case), contact.pair, contact.hardness)
+    if not repeats(contact.surface):
+        raise CaseError(
+            "roughness.file: opposite edges of the scan do not match, so it does not repeat, as "
+            '[impacts] needs; set roughness.extend = "twin"'
+        )
 
 
 def run_in(
@@ -54,10 +67,9 @@ def run_in(
 ) -> dict[str, Any]:
     """Run the surfaces of `case` in, write the tables and the final surfaces; return the summary.
 
-    `contact` is the contact of the new bodies. Raises `CaseError` if a surface does not repeat.
+    `contact` is the contact of the new bodies, which `require_run_in` accepts.
     """
     table = _table(case)
-    table.require_possible(contact.grid, _velocities(case), contact.pair, contact.hardness)
     bodies = _bodies(case, folder)
     own = list(_sequences(case, contact, bodies, table.seed, progress, "run-in"))
     points = [point for one in own for point in one.points]
@@ -120,13 +132,7 @@ def _rough_bodies(case: Case) -> str:
 
 def _bodies(case: Case, folder: Path) -> tuple[Surface, Surface]:
     """The surfaces of the two bodies."""
-    whole = case.surface(folder)
-    if not repeats(whole):
-        raise CaseError(
-            "roughness.file: opposite edges of the scan do not match, so it does not repeat, as "
-            '[impacts] needs; set roughness.extend = "twin"'
-        )
-    parts = _parts(case)
+    whole, parts = case.surface(folder), _parts(case)
     if parts is None:
         return _scaled(whole), _scaled(_variant(case, _OTHER_SURFACE).surface(folder))
     first, second = (
@@ -174,28 +180,29 @@ def _sequences(
     for measured in groups:
         runs = RunIn(new, second, place=table.place, seed=seed)
         at = f" at {measured[0]:.3g} m/s" if table.own_surfaces else ""
-        progress(f"{words}{at}")
-        yield _sequence(runs, table, measured, seed)
+        yield _sequence(runs, table, measured, seed, lambda now, at=at: progress(words + at + now))
 
 
-def _sequence(runs: RunIn, table: ImpactsTable, measured: Sequence[float], seed: int) -> _Sequence:
+def _sequence(
+    runs: RunIn, table: ImpactsTable, measured: Sequence[float], seed: int, progress: Say
+) -> _Sequence:
     impacts: list[RepeatedImpact] = []
-    points = _measure(runs, table, measured, seed)
+
+    def measure() -> Iterator[RunInPoint]:
+        progress(f", coverage {runs.coverage:.2g}")
+        for V in measured:
+            yield RunInPoint.of(list(runs.probe(V, table.places, seed + _PROBES)))
+
+    points = list(measure())
     following = runs.impacts(table.velocities(measured[0], seed))
     if table.count is not None:
         impacts += (next(following) for _ in range(table.count))
-        points += _measure(runs, table, measured, seed)
+        points += measure()
     for coverage in sorted(set(table.coverage or [])):
         while not impacts or coverage - runs.coverage > 0.5 * runs.coverage / len(impacts):
             impacts.append(next(following))
-        points += _measure(runs, table, measured, seed)
+        points += measure()
     return _Sequence(impacts, points, runs.surfaces)
-
-
-def _measure(
-    runs: RunIn, table: ImpactsTable, velocities: Sequence[float], seed: int
-) -> list[RunInPoint]:
-    return [RunInPoint.of(list(runs.probe(V, table.places, seed + _PROBES))) for V in velocities]
 
 
 def _with_errors(
