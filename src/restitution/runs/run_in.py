@@ -180,7 +180,11 @@ def _sequences(
     for measured in groups:
         runs = RunIn(new, second, place=table.place, seed=seed)
         at = f" at {measured[0]:.3g} m/s" if table.own_surfaces else ""
-        yield _sequence(runs, table, measured, seed, lambda now, at=at: progress(words + at + now))
+        yield _sequence(runs, table, measured, seed, _after(words + at, progress))
+
+
+def _after(words: str, progress: Say) -> Say:
+    return lambda more: progress(words + more)
 
 
 def _sequence(
