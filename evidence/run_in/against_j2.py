@@ -46,7 +46,8 @@ def rows_of(path: Path) -> list[dict]:
     for impact, work in zip(data["impacts"], works, strict=True):
         V, e = math.sqrt(2 * work / rigid.mass), impact["restitution"]
         at = tuple(nodes // 2 + shift for shift in impact["shift_nodes"])
-        row = {"case": data["case"], "impact": impact["impact"], "j2": round(e, 4)}
+        row = {"case": data["case"], "impact": impact["impact"], "work_nJ": round(1e9 * work, 1)}
+        row |= {"j2": round(e, 4)}
         worn = runs["growing"].surfaces[0].height
         worn = Surface(np.roll(worn, [nodes // 2 - k for k in at], (0, 1)), surface.grid)
         state = solve_at_velocity(Contact(pair, worn, plasticity=MODELS["growing"]), V)

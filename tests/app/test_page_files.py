@@ -7,9 +7,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app_page import GLASS_BEAD, RMS, change, computed, expect, names_in, rest, table, taken
+from app_page import (
+    COMPLETE,
+    GLASS_BEAD,
+    RMS,
+    change,
+    computed,
+    expect,
+    names_in,
+    rest,
+    table,
+    taken,
+)
 from restitution import api
 from restitution.errors import CaseError
+from tolerance import approx
 
 
 def test_figures_are_taken_in_each_format(page, tmp_path):
@@ -82,6 +94,28 @@ def test_a_finer_run_can_be_cancelled_and_the_page_goes_on(page):
     expect(page.locator("#finer-status")).to_have_text("cancelled")
     expect(page.get_by_role("button", name="Run finer")).to_be_enabled()
     change(page, RMS, "22 nm")
+
+
+def test_many_impacts_are_run_in_beside_the_new_surfaces(page, live_case):
+    computed(page)
+    status, coverage = page.locator("#worn-status"), "#field-impacts-coverage"
+    page.get_by_role("button", name="Run in").click()
+    expect(status).to_contain_text("give a coverage")
+    kept = live_case[: live_case.index("[indentation]")]
+    page.locator("#case-file summary").click()
+    page.locator("#case-text").fill(
+        f'total_error = false\n{kept}[impact]\nvelocity = "0.3 m/s"\n[impacts]\n'
+        "coverage = 0.001\nplaces = 2\n"
+    )
+    page.get_by_role("button", name="Use this text").click()
+    expect(page.locator(f"{coverage}-problem")).to_contain_text("less than one contact")
+    change(page, coverage, "0.2")
+    page.get_by_role("button", name="Run in").click()
+    expect(status).to_contain_text("coverage")
+    expect(status).to_have_text(COMPLETE)
+    assert page.locator("#worn-cor svg").count() > 0
+    assert [float(row[1]) for row in table(page, "worn-numbers")] == approx([0, 0.2], abs=0.05)
+    expect(page.locator("#take-of option[value=worn]")).to_be_enabled()
 
 
 def drop(page, file):

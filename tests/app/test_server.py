@@ -66,6 +66,16 @@ class Client(App):
         assert status == 200, text
         return [json.loads(line) for line in text.splitlines()]
 
+    def download(self, values):
+        """The status and bytes of a file to take away."""
+        connection = http.client.HTTPConnection("127.0.0.1", int(self.port), timeout=60)
+        headers = {"Content-Type": "application/json", "X-Token": self.token}
+        connection.request("POST", "/api/take", json.dumps(values), headers)
+        answer = connection.getresponse()
+        reply = answer.status, answer.read()
+        connection.close()
+        return reply
+
     def upload(self, name, content):
         headers = {"Content_Type": "application/octet-stream", "X_File_Name": name, "X_Tab": "a"}
         return self.ask("POST", "/api/upload", content, **headers)
@@ -335,6 +345,47 @@ def test_the_files_to_take_away_agree_with_the_page(app):
     for row, of_page in zip(results.curve.rows, line["curve"], strict=True):
         for name in ("restitution", "force_N", "impact_velocity_m_per_s", "loading_work_J"):
             assert row[name] == of_page[name]
+
+
+def worn_content(app):
+    content = app.content() | {"impact": {"velocity": ["0.05 m/s"]}}
+    del content["indentation"]
+    return content | {"impacts": {"coverage": 0.11, "places": 2}}
+
+
+def test_many_impacts_run_in_the_background_with_progress(app):
+    """New and run-in surfaces in one figure and one table; the export is at the coverage."""
+    content = worn_content(app)
+    *progress, line = app.post("run", tab="a", content=content, grids=1)
+    words = [said["progress"] for said in progress]
+    assert words[-2:] == ["run-in at 0.05 m/s, coverage 0", "run-in at 0.05 m/s, coverage 0.11"]
+    assert [round(row["coverage"], 1) for row in line["worn"]] == [0, 0.1]
+    assert line["worn"][0]["restitution"] == approx(line["results"][0]["restitution"], rel=0.02)
+    names = [trace.get("name") for trace in line["worn_figure"]["data"]]
+    assert {"new surfaces", "coverage 0.11"} <= set(names)
+    values = {"tab": "a", "content": content, "grids": 1, "code": "lammps", "velocity": "0.05 m/s"}
+    status, archive = app.download(values | {"what": "export"})
+    assert status == 200
+    with zipfile.ZipFile(io.BytesIO(archive)) as opened:
+        (path,) = (path for path in opened.namelist() if path.endswith("restitution_lammps.txt"))
+        words = b" ".join(opened.read(path).split())
+    assert b"that earlier impacts have covered 0.106 times" in words
+
+
+def test_many_impacts_stop_when_the_page_closes_the_request(app):
+    content = worn_content(app) | {"total_error": True}
+    content["impacts"] = {"coverage": 20, "places": 200}
+    connection = http.client.HTTPConnection("127.0.0.1", int(app.port), timeout=60)
+    headers = {"X-Token": app.token, "Content-Type": "application/json"}
+    body = json.dumps({"tab": "a", "content": content, "grids": 1})
+    connection.request("POST", "/api/run", body, headers)
+    answer = connection.getresponse()
+    while "run-in" not in json.loads(answer.readline())["progress"]:
+        pass
+    connection.close()
+    began = time.perf_counter()
+    app.post("run", tab="a", content=worn_content(app), grids=1)
+    assert time.perf_counter() - began < 10
 
 
 def test_a_file_that_was_taken_leaves_nothing_behind(app):

@@ -111,3 +111,27 @@ def test_the_bracket_grows_from_a_depth_that_is_too_shallow(rough_contact, monke
     )
     again = solve_at_velocity(contact, velocity)
     assert again.indentation == approx(found.indentation, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("model", "tolerance"),
+    [
+        ({"yield_pressure": 750e6}, 1e-6),
+        ({"yield_strength": 300e6}, 1e-3),
+        ({"work_of_adhesion": 0.02, "yield_pressure": 750e6}, 2e-3),
+    ],
+)
+def test_an_expected_depth_saves_solves_and_changes_nothing_else(rough_contact, model, tolerance):
+    contact = replace(rough_contact(rms=10 * NM), **models_of(**model))
+    unaided = solve_at_velocity(contact, 0.01)
+    for share in (0.9, 1.1):
+        state = solve_at_velocity(contact, 0.01, near=share * unaided.indentation)
+        assert _velocity(state) == approx(0.01, rel=1e-6 if tolerance == 1e-6 else 1e-4)
+        assert state.indentation == approx(unaided.indentation, rel=tolerance)
+    near = solve_at_velocity(contact, 0.01, near=0.99 * unaided.indentation)
+    assert near.convolutions < 0.9 * unaided.convolutions
+
+
+def test_an_expected_depth_must_be_positive(rough_contact):
+    with pytest.raises(CaseError, match=r"^near: .* is not a positive depth"):
+        solve_at_velocity(rough_contact(), 0.1, near=0.0)

@@ -214,3 +214,16 @@ def test_impacts_are_those_of_every_pair_and_give_laws_at_their_coverage(mixture
     counted = text.replace("coverage = [1, 3]", "count = 100")
     with pytest.raises(CaseError, match=r"impacts\.count: a mixture needs coverage"):
         parse_mixture(counted)
+
+
+def test_the_roughness_of_a_pair_stays_on_its_bodies(mixture_text):
+    text = mixture_text().replace("[grid]", "[impacts]\ncoverage = 1\n\n[grid]")
+    owners = {
+        family.name: parse_case(family.case(family.radii[0])).impacts.rough
+        for family in families(parse_mixture(text))
+    }
+    assert owners["alu+alu"] == ["first", "second"]
+    assert owners["alu+pmma"] == ["first"]  # the plastic yields, and is smooth
+    assert owners["pmma+pmma"] is None
+    with pytest.raises(CaseError, match=r"impacts\.rough: .* remove this key"):
+        parse_mixture(text.replace("coverage = 1", 'coverage = 1\nrough = "both"'))

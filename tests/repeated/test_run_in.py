@@ -26,7 +26,10 @@ from restitution import (
     solve_at_velocity,
 )
 from restitution.contact.patch.law import PatchRepulsion
+from restitution.numerics.intervals import half_interval
+from restitution.repeated import run_in
 from restitution.repeated.run_in import nominal_area
+from restitution.repeated.velocities import drawn, in_turn
 from tolerance import approx
 
 GRID = Grid((64, 64), (0.2e-6, 0.2e-6))
@@ -85,6 +88,24 @@ def test_the_energy_of_every_impact_balances(plasticity, off):
         assert hit.loading_work == approx(kinetic, rel=off)
         assert hit.unloading_work + hit.plastic_work == approx(hit.loading_work)
         assert hit.unloading_work == approx(hit.restitution**2 * hit.loading_work)
+
+
+@pytest.mark.parametrize("plasticity", [ConstantBound(1e9), ExpandingCavity(4e8)])
+def test_the_depth_of_an_impact_is_expected_from_the_last_one(plasticity, monkeypatch):
+    """So near that the search for it needs few solves."""
+    depths = []
+
+    def recorded(contact, velocity, near):
+        state = solve_at_velocity(contact, velocity, near=near)
+        depths.append((near, state.indentation))
+        return state
+
+    monkeypatch.setattr(run_in, "solve_at_velocity", recorded)
+    runs = RunIn(contact_of(plasticity), seed=3)
+    for _ in itertools.islice(runs.impacts(itertools.cycle([V, 0.5 * V])), 8):
+        pass
+    near, depth = np.array(depths[1:]).T
+    assert near == approx(depth, rel=0.15)
 
 
 def test_the_loading_work_is_the_integral_of_the_force_on_worn_surfaces():
@@ -184,6 +205,28 @@ def test_roughness_is_flattened_and_restitution_grows():
     assert hits[-1].coverage == approx(60 * nominal_area(Pair(BALL, BALL), 1e9, V) / (12.8e-6) ** 2)
 
 
+def test_the_order_of_the_impacts_does_not_matter_in_the_steady_state():
+    """Slow and fast ones in turn, at random, or many slow ones first: one distribution of COR."""
+
+    def probed(runs):
+        return np.array([hit.restitution for hit in runs.probe(V, 30, 9)])
+
+    def worn(velocities):
+        runs = RunIn(contact_of(), seed=4)
+        for _ in itertools.islice(runs.impacts(velocities), 100):
+            pass
+        return probed(runs)
+
+    speeds = [0.5 * V, V]
+    slow_first = itertools.chain(itertools.repeat(speeds[0], 40), in_turn(speeds))
+    turn, *others = map(worn, (in_turn(speeds), drawn(speeds, [1, 1], 5), slow_first))
+    assert turn.mean() > probed(RunIn(contact_of())).mean() + 0.03
+    for e in others:
+        interval = half_interval(30) * math.hypot(e.std(ddof=1), turn.std(ddof=1))
+        assert abs(e.mean() - turn.mean()) < 0.5 * interval
+        assert e.std() == approx(turn.std(), rel=0.25)
+
+
 @pytest.mark.parametrize(
     ("adhesion", "radius", "spacing", "velocity"),
     [
@@ -201,6 +244,7 @@ def test_flattened_asperities_adhere_more(adhesion, radius, spacing, velocity):
     runs = RunIn(Contact(Pair(ball, ball), surface, **model), place="same")
     first, second = itertools.islice(runs.impacts(velocity), 2)
     assert second.restitution > first.restitution
+    assert second.coverage > first.coverage
     assert second.pull_off_force > 1.05 * first.pull_off_force
 
 

@@ -4,17 +4,21 @@ import csv
 import io
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
+import tomli_w
 
-from restitution import RestitutionError, open_results, read_surface, run
+from restitution import Body, Pair, RestitutionError, open_results, read_surface, run
 from restitution.case.case_file import parse_case
 from restitution.dem.export import export
 from restitution.laws.coverage import at_coverage, coverage_of
 from restitution.laws.from_results import bare_law
 from restitution.repeated.points import RepeatedImpact, SteadyState
+from restitution.repeated.run_in import nominal_area
 from restitution.repeated.velocities import drawn, in_turn, rayleigh
+from restitution.runs.run_in import _bodies
 from tolerance import approx
 
 pytestmark = pytest.mark.filterwarnings("ignore::UserWarning")  # of a coarse grid
@@ -134,6 +138,25 @@ def test_one_sequence_may_have_a_distribution_of_velocities():
     ]
 
 
+@pytest.mark.parametrize(
+    ("more", "speeds"),
+    [({}, [0.05, 0.15] * 2), ({"weights": [0, 2]}, [0.15] * 4)],
+    ids=["in turn", "weighted"],
+)
+def test_impacts_may_alternate_with_others_or_have_weights(more, speeds):
+    impacts = {"count": 4, "places": 2, "velocity": ["0.05 m/s", "0.15 m/s"], **more}
+    results = run(case(impacts=impacts, total_error=False))
+    (sequence,) = results.impacts
+    assert [hit.velocity for hit in sequence] == speeds
+    covered = [nominal_area(results_pair(), 1e9, V) / 9.6e-6**2 for V in speeds]
+    assert [hit.coverage for hit in sequence] == approx(np.cumsum(covered))
+
+
+def results_pair():
+    ball = Body(50e-6, 210e9, 0.3, 7850)
+    return Pair(ball, ball)
+
+
 def test_velocities_follow_their_distribution():
     turns = in_turn([1.0, 2.0])
     assert [next(turns) for _ in range(3)] == [1.0, 2.0, 1.0]
@@ -191,6 +214,11 @@ def test_a_steady_state_is_told_from_a_trend():
         ({"roughness": {**CASE["roughness"], "realisations": 3}}, "roughness.realisations"),
         ({"grid": {**CASE["grid"], "refine": "auto"}}, "grid.refine: must be one number"),
         ({"grid": {**CASE["grid"], "nodes": 10}}, "grid.nodes: the grid of 3 µm is too small"),
+        ({"impacts": {"count": 3, "rough": ["first", "both"]}}, 'no "both"'),
+        (
+            {"impacts": {"count": 3, "rough": ["first", "second"]}},
+            "impacts.rough: names 2 bodies for 1 tables",
+        ),
         (
             {"interface": {**CASE["interface"], "plasticity": "truncated"}},
             'interface.plasticity: "truncated" defines a single impact',
@@ -198,16 +226,28 @@ def test_a_steady_state_is_told_from_a_trend():
     ],
 )
 def test_impossible_tables_are_refused_in_one_line(tables, words):
-    import tomli_w
-
     with pytest.raises(RestitutionError, match=words) as refused:
         parse_case(tomli_w.dumps(case(**tables)))
     assert "\n" not in str(refused.value)
 
 
-def test_impacts_need_the_table_impact():
-    import tomli_w
+def test_each_table_of_roughness_is_on_its_body():
+    waves = [{**CASE["roughness"], "rms": f"{rms} nm", "seed": rms} for rms in (3, 5, 8)]
+    own = {"roughness": waves, "impact": {"velocity": "0.2 m/s"}, "total_error": False}
 
+    def rms_of(rough):
+        impacts = {"count": 1, "places": 2, **({"rough": rough} if rough else {})}
+        parsed = parse_case(tomli_w.dumps(case(impacts=impacts, **own)))
+        return [float(surface.height.std()) for surface in _bodies(parsed, Path())]
+
+    assert rms_of(["second", "first", "second"]) == approx([5e-9, math.hypot(3e-9, 8e-9)], rel=0.05)
+    assert rms_of("first")[1] == 0
+    assert rms_of("second")[0] == 0
+    assert rms_of("both") == approx([3e-9, math.hypot(5e-9, 8e-9)], rel=0.05)
+    assert rms_of(None) == rms_of("both")  # two equal bodies
+
+
+def test_impacts_need_the_table_impact():
     tables = {key: table for key, table in CASE.items() if key != "impact"}
     with pytest.raises(RestitutionError, match=r"\[impacts\]: needs \[impact\]"):
         parse_case(tomli_w.dumps({**tables, "indentation": {"values": ["10 nm"]}}))

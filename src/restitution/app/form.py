@@ -87,6 +87,7 @@ def _groups(case: type[Case]) -> list[Group]:
         Group("Surface", _table(case, "roughness")),
         Group("Grid", _table(case, "grid")),
         Group("Range", (depths, *(field for name in _DEPTHS for field in _span(case, name)))),
+        Group("Many impacts", _table(case, "impacts", ("depths", "impact"))),
         Group("Unloading and title", (*top, *_table(case, "unloading")), closed=True),
     ]
 

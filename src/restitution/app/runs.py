@@ -7,12 +7,14 @@ import shutil
 from collections.abc import Callable
 from pathlib import Path
 from tempfile import mkdtemp
+from typing import Any
 
-from restitution.app.figures import as_json, curve_figures
+from restitution.app.figures import as_json, curve_figures, drawing
 from restitution.case.case_file import parse_case
 from restitution.case.omissions import default_yield
 from restitution.errors import RestitutionError
-from restitution.results.reader import read_run
+from restitution.plots.run_in import run_in_figure
+from restitution.results.reader import RunResults, read_run
 from restitution.results.writer import ResultsFolder
 from restitution.runs.convergence import run_convergence
 from restitution.runs.ensemble import run_realisations
@@ -70,5 +72,16 @@ def results_line(out: Path) -> str:
             "seconds": summary["seconds"],
             "grids": summary.get("grids", []),
             "includes": summary["diagnostics"].get("total_error_includes", ""),
+            **_worn(run),
         }
     )
+
+
+def _worn(run: RunResults) -> dict[str, Any]:
+    """The figure and the rows of a run with many impacts."""
+    if not run.run_in:
+        return {}
+    return {
+        "worn": [point.cells() for point in run.run_in],
+        "worn_figure": drawing(run_in_figure(run.run_in)),
+    }

@@ -56,12 +56,15 @@ Handler = Callable[[Request], Awaitable[Response]]
 
 
 class Server:
-    """Passes the requests of the page to processes: for live curves, complete and finer runs."""
+    """Passes the requests of the page to processes.
+
+    They are for live curves, complete runs, finer runs and runs with many impacts.
+    """
 
     def __init__(self, session: Session) -> None:
         self._session = session
-        self._live, self._runs, self._finer = (
-            Process(session.scans, session.room) for _ in range(3)
+        self._live, self._runs, self._finer, self._worn = (
+            Process(session.scans, session.room) for _ in range(4)
         )
         self.app = Starlette(
             routes=[
@@ -76,7 +79,7 @@ class Server:
 
     def stop(self) -> None:
         """End the processes, and with them all unfinished requests."""
-        for process in (self._live, self._runs, self._finer):
+        for process in (self._live, self._runs, self._finer, self._worn):
             process.stop()
 
     def _handlers(self) -> dict[str, Handler]:
@@ -146,9 +149,13 @@ class Server:
 
     async def _ask(self, name: str, request: Request) -> AsyncGenerator[str]:
         values = await _values(request, _VALUES[name])
+        whole = self._runs
         if "content" in values:
-            values["text"] = _text(values.pop("content"))
-        process = {None: self._live, 1: self._runs}.get(values.get("grids"), self._finer)
+            content = values.pop("content")
+            values["text"] = _text(content)
+            if "impacts" in content and values.get("what") != "case":
+                whole = self._worn
+        process = {None: self._live, 1: whole}.get(values.get("grids"), self._finer)
         return process.ask(kind=name, **values)
 
     async def _take(self, request: Request) -> Response:

@@ -16,6 +16,7 @@ from restitution.laws.law_files import write_law
 from restitution.pages.report import write_report
 from restitution.plots.law import law_figure
 from restitution.plots.run import run_figures
+from restitution.plots.run_in import run_in_figures
 from restitution.plots.static import Format, write_figure, write_figures
 from restitution.results.reader import read_run
 
@@ -40,7 +41,8 @@ def case_file(text: str, scans: Path, out: Path) -> Path:
 def take(what: str, results: Path, out: Path, code: str, velocity: str) -> Path:
     """Write the download `what` from the folder `results` into `out`; return the file.
 
-    Only "export" uses `code` (the DEM code) and `velocity` (the impact velocity, or "").
+    Only "export" uses `code` (the DEM code) and `velocity` (the impact velocity, or ""); after
+    many impacts, it is of the largest coverage.
     """
     if what == "report":
         return Path(shutil.copy(write_report(results), out))
@@ -48,17 +50,31 @@ def take(what: str, results: Path, out: Path, code: str, velocity: str) -> Path:
         given = velocity or None
         return _zipped(
             out / f"{code}.zip",
-            lambda folder: export(results, to=code, out=folder / "export", velocity=given),
+            lambda folder: export(
+                results,
+                to=code,
+                out=folder / "export",
+                velocity=given,
+                coverage=_coverage(results),
+            ),
         )
     if what not in _ARCHIVES:
         raise CaseError(f'"{what}" is not one of case, export, {", ".join(_ARCHIVES)}, report')
     return _zipped(out / f"{what}.zip", partial(_ARCHIVES[what], results))
 
 
+def _coverage(results: Path) -> float | None:
+    """The largest coverage that all velocities of a run have reached; None: the first impact."""
+    reached: dict[float, float] = {}
+    for point in read_run(results).run_in:
+        reached[point.velocity] = max(point.coverage, reached.get(point.velocity, 0.0))
+    return min(reached.values(), default=None)
+
+
 def _figures(results: Path, folder: Path) -> None:
     run = read_run(results)
     for kind in FIGURE_FORMATS:
-        write_figures(folder, run_figures(run.dataset), kind)
+        write_figures(folder, [*run_figures(run.dataset), *run_in_figures(run)], kind)
     for table in results.glob("*.csv"):
         shutil.copy(table, folder)
 

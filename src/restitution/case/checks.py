@@ -65,6 +65,12 @@ def _check_impacts(case: CaseTables, impacts: ImpactsTable) -> None:
             "roughness.realisations: must be 1 with [impacts], which measures COR at many "
             "places; remove this key"
         )
+    named, tables = len(impacts.rough or [""]), len(case.roughness)
+    if named > 1 and named != tables:
+        raise ValueError(
+            f"impacts.rough: names {named} bodies for {tables} tables [[roughness]]; give one for "
+            'each table, or "both"'
+        )
     for part in case.roughness:
         if isinstance(part, GeneratedRoughness) and not part.periodic:
             raise ValueError(

@@ -9,7 +9,7 @@ from typing import Annotated, Literal, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from restitution.case.quantities import Velocity
-from restitution.case.rulebook import key
+from restitution.case.rulebook import Input, key
 from restitution.case.schema import Table
 from restitution.contact.bodies import Pair
 from restitution.display import quantity
@@ -24,6 +24,7 @@ MOST_PLACES = 10_000
 _WIDEST = 1.6
 
 _Listed = BeforeValidator(lambda value: value if isinstance(value, list) else [value])
+Rough = Literal["first", "second", "both"]
 Coverage = Annotated[float, Field(gt=0)]
 
 
@@ -38,16 +39,22 @@ class ImpactsTable(Table):
         "one coverage or a list, at which COR is measured: number of impacts times the contact "
         "area of smooth bodies, divided by the area of the grid",
         default="required, or `count`",
+        page=Input(
+            "Coverage",
+            "How many times earlier impacts have covered the surface, such as 3; empty: the first "
+            "impact only.",
+        ),
     )
     place: Place = key(
         "random",
         'where the bodies are hit: `"random"`: both at new places; `"same"`: both at one place; '
         '`"track"`: a wall at one place, and the sphere at new ones',
     )
-    rough: Literal["first", "second", "both"] | None = key(
+    rough: Annotated[list[Rough] | None, _Listed, Field(min_length=1, max_length=100)] = key(
         None,
         'the body that has the roughness; `"both"`: each has a part of it, of several tables '
-        "`[[roughness]]` the first body the first one",
+        '`[[roughness]]` the first body the first one; a list such as `["first", "second"]`: the '
+        "body of each table `[[roughness]]`",
         default='`"both"` for two equal bodies, or else the body that yields',
     )
     seed: Annotated[int, Field(ge=0, lt=2**32)] = key(0, "seed of the places and velocities")
@@ -78,6 +85,10 @@ class ImpactsTable(Table):
     def _one_way(self) -> Self:
         if (self.count is None) == (self.coverage is None):
             raise ValueError("give either count or coverage, such as coverage = 3")
+        if self.rough is not None and len(self.rough) > 1 and "both" in self.rough:
+            raise ValueError(
+                'rough: a list has "first" or "second" for each table [[roughness]], and no "both"'
+            )
         if self.weights is not None:
             self._check_weights(self.weights)
         if self.distribution is not None and (self.velocity is None or len(self.velocity) != 1):

@@ -48,7 +48,7 @@ from restitution.runs.convergence import run_convergence
 from restitution.runs.ensemble import run_realisations
 from restitution.runs.error_budget import steps
 from restitution.runs.losses import loss_information
-from restitution.runs.run_in import sequences
+from restitution.runs.run_in import measurements
 
 # If the total error of COR is at least this value at any depth, the name of the largest part of the
 # error and the remedy are printed.
@@ -130,7 +130,7 @@ def _compute(
 ) -> dict[str, Any]:
     depths = len(read.depths())
     with naming(case), warn_once() as warn, progress_bar() as bar:
-        more = 0 if read.periodic else steps(read) + sequences(read)
+        more = 0 if read.periodic else steps(read) + measurements(read)
         task = bar.add_task("reading the surface", total=depths * curves + more)
         summary = start(
             read,
@@ -215,21 +215,13 @@ def _draw(out: Path, figures: FigureFormat) -> list[Path]:
     # Importing matplotlib takes a second, which a case that is refused need not wait.
     from restitution.plots.periodic import periodic_figures
     from restitution.plots.run import run_figures
-    from restitution.plots.run_in import impacts_figure, run_in_figure
+    from restitution.plots.run_in import run_in_figures
     from restitution.plots.static import write_figures
 
     if is_periodic(out):
         return write_figures(out, periodic_figures(PeriodicResults(out).dataset), figures.value)
     run = RunResults(out)
-    drawn = write_figures(out, run_figures(run.dataset), figures.value)
-    if run.run_in:
-        title = run.summary["title"]
-        named = (
-            ("run-in-velocity", run_in_figure(run.run_in, title)),
-            ("run-in-impacts", impacts_figure(run.impacts, title)),
-        )
-        drawn += write_figures(out, named, figures.value)
-    return drawn
+    return write_figures(out, [*run_figures(run.dataset), *run_in_figures(run)], figures.value)
 
 
 def _with_error(cor: float, error: float, wanted: bool) -> str:

@@ -125,7 +125,7 @@ def _covered(law: Law, velocity: float) -> list[str]:
         math.log(velocity), np.log(law.column("velocity")), law.column("deviation")
     )
     return [
-        f"  e is that of surfaces that earlier impacts have covered {law.coverage:g} times; its "
+        f"  e is that of surfaces that earlier impacts have covered {law.coverage:.3g} times; its "
         f"standard deviation over places is {deviation:.2g}"
     ]
 

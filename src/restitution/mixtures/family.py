@@ -132,8 +132,13 @@ class Family:
             "grid": grid,
             "impact": {"velocity": [f"{V!r} m/s" for V in self._velocities(radius)]},
             "unloading": {"curves": 1},
-            **({"impacts": self.mixture.impacts} if self.mixture.impacts and sized else {}),
+            **({"impacts": self._impacts} if self.mixture.impacts and sized else {}),
         }
+
+    @property
+    def _impacts(self) -> dict[str, Any]:
+        owners = ["first"] * len(self.first.roughness) + ["second"] * len(self.second.roughness)
+        return {**(self.mixture.impacts or {}), **({"rough": owners} if owners else {})}
 
     def _velocities(self, radius: float) -> list[float]:
         """Those of the mixture, and lower and higher ones until W/R*³ of every pair is covered."""

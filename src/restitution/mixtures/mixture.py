@@ -17,7 +17,7 @@ from restitution.display import some_of, without_numbers
 from restitution.errors import OutputError
 from restitution.laws.coverage import at_coverage
 from restitution.laws.from_results import bare_law
-from restitution.laws.law import Law
+from restitution.laws.law import Law, LawPoint
 from restitution.laws.law_files import LAWS, MIXTURE_FILE, write_law
 from restitution.mixtures.family import Family, ParticlePair, families
 from restitution.mixtures.mixture_file import Mixture
@@ -168,6 +168,7 @@ def write_mixture(
                 "restitution": point.restitution,
                 "restitution_error": point.error,
                 "resolved": point.resolved,
+                **_covered(pair.law, point),
             }
             for point in pair.law.points
         ]
@@ -176,6 +177,7 @@ def write_mixture(
         out / "summary.json",
         {
             "title": mixture.title,
+            "coverage": mixture.coverage,
             "pairs": len(pairs),
             "curves_computed": runs,
             "pairs_interpolated": sum(not pair.computed for pair in pairs),
@@ -188,6 +190,13 @@ def write_mixture(
         },
     )
     return [LAWS, MIXTURE_FILE, PAIRS, RUNS, "summary.json"]
+
+
+def _covered(law: Law, point: LawPoint) -> dict[str, float]:
+    """Columns of laws at a coverage."""
+    if law.coverage is None:
+        return {}
+    return {"coverage": law.coverage, "restitution_std": point.deviation or 0.0}
 
 
 def condensed_warnings(pairs: Sequence[PairLaw]) -> list[str]:

@@ -189,6 +189,10 @@ def parse_mixture(text: str) -> Mixture:
 def _coverage(impacts: ImpactsTable | None) -> float | None:
     if impacts is None:
         return None
+    if impacts.rough is not None:
+        raise CaseError(
+            "impacts.rough: the tables roughness of the materials say who is rough; remove this key"
+        )
     if impacts.coverage is None:
         raise CaseError("impacts.count: a mixture needs coverage instead, such as coverage = 3")
     return max(impacts.coverage)

@@ -10,13 +10,14 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from restitution.curve.interpolation import RatioCurve, root
 from restitution.laws.compact_fit import compact_fit
-from restitution.laws.law import Law, LawPoint
+from restitution.laws.law import Law, LawPoint, Quantiles
 from restitution.losses.losses import NAMES
 from restitution.mixtures.family import Family, ParticlePair
 
@@ -133,6 +134,12 @@ class FamilyLaws:
                 return None
             return sum(shares[k] * _factor_at(laws[k], name, _of(laws[k], V, pair)) for k in used)
 
+        def quantiles() -> Quantiles | None:
+            if any(point.quantiles is None for law in laws for point in law.points):
+                return None
+            table = sum(shares[k] * _quantiles_at(laws[k], _of(laws[k], V, pair)) for k in used)
+            return cast(Quantiles, tuple(np.asarray(table).tolist()))
+
         factors = {name: of for name in NAMES if (of := factor(name)) is not None}
         pull_off = [point.pull_off_force for law in laws for point in law.points]
         return LawPoint(
@@ -148,6 +155,7 @@ class FamilyLaws:
             quasi_static=_quasi_static(root(ratio), factors),
             factors=factors,
             deviation=None if self.laws[0].coverage is None else mean("deviation", 0),
+            quantiles=quantiles(),
         )
 
 
@@ -183,6 +191,12 @@ def _column_at(law: Law, name: str, velocity: float) -> float:
 def _factor_at(law: Law, name: str, velocity: float) -> float:
     L, values = np.log(law.column("velocity")), [point.factors[name] for point in law.points]
     return float(np.interp(math.log(velocity), L, values))
+
+
+def _quantiles_at(law: Law, velocity: float) -> Array:
+    L, x = np.log(law.column("velocity")), math.log(velocity)
+    table = np.array([point.quantiles for point in law.points], dtype=float).T
+    return np.array([np.interp(x, L, values) for values in table])
 
 
 def _quasi_static(restitution: float, factors: Mapping[str, float]) -> float:

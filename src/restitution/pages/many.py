@@ -114,14 +114,20 @@ def write_mixture_page(out: Path) -> Path:
     rows: list[list[Cell]] = [
         [key.replace("_", " "), value if isinstance(value, (int, float)) else json.dumps(value)]
         for key, value in summary.items()
-        if key not in ("title", "warnings")
+        if key not in ("title", "warnings") and value is not None
     ]
+    coverage = laws[0].coverage
     page = Page(
         title=summary["title"] or "Mixture",
         intro=[
             f"{summary['pairs']} pairs of particles and walls, from {summary['curves_computed']} "
             "computed curves. The laws of other pairs are interpolated between computed reduced "
-            "radii R*, at equal values of loading work divided by R*³."
+            "radii R*, at equal values of loading work divided by R*³.",
+            *(
+                [f"COR is that of surfaces that earlier impacts have covered {coverage:g} times."]
+                if coverage is not None
+                else []
+            ),
         ],
         warnings=summary["warnings"],
         parts=[

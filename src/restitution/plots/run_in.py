@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -12,6 +12,7 @@ from restitution.display import quantity
 from restitution.plots.cor import bars, cor_chart
 from restitution.plots.figure import DOTTED, GREY, PALETTE, Axis, Band, Figure, Line, Points, Series
 from restitution.repeated.points import RepeatedImpact, RunInPoint
+from restitution.results.reader import RunResults
 
 _MOST = len(PALETTE)  # largest number of curves in a figure
 _WINDOW = 30  # part of the impacts over which the moving mean is taken
@@ -32,6 +33,14 @@ def coverage_curves(points: Sequence[RunInPoint]) -> list[CoverageCurve]:
         by_velocity.setdefault(point.velocity, []).append(point)
     levels = zip(*(by_velocity[V] for V in sorted(by_velocity)), strict=True)
     return [CoverageCurve(float(array(level, "coverage").mean()), list(level)) for level in levels]
+
+
+def run_in_figures(run: RunResults) -> Iterator[tuple[str, Figure]]:
+    """The figures of a run and the names of their files; none without repeated impacts."""
+    if run.run_in:
+        title = run.summary["title"]
+        yield "run-in-velocity", run_in_figure(run.run_in, title)
+        yield "run-in-impacts", impacts_figure(run.impacts, title)
 
 
 def run_in_figure(points: Sequence[RunInPoint], title: str = "") -> Figure:

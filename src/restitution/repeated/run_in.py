@@ -32,7 +32,7 @@ from restitution.numerics.grid import Grid
 from restitution.numerics.read_only import freeze
 from restitution.repeated.points import RepeatedImpact
 from restitution.surfaces import Surface
-from restitution.theory import ThorntonNing
+from restitution.theory import Hertz, ThorntonNing
 
 Array = NDArray[np.float64]
 Nodes = tuple[NDArray[np.intp], ...]
@@ -44,6 +44,10 @@ Shift = tuple[int, int]
 _FIRST_WINDOW, _WIDER = 4.0, 1.3
 _ATTRACTED = 5.0  # gap beyond which attraction is neglected, in its lengths
 _ROUND = 8  # windows are multiples of this number of nodes, so that few operators are needed
+# An impact is deeper than if full pressure carried all overlap, by a share of Hertz's depth that
+# hardly changes between places; that of the first impact. The first guess is shallower, because the
+# loading work of a greater depth would be integrated in vain.
+_FIRST_DEEPER, _SHALLOWER, _LEAST = 0.2, 0.96, 0.3
 # Steps across the edges of a periodic surface are at most this multiple of those inside (rms).
 _MOST_STEP = 2.0
 
@@ -117,6 +121,7 @@ class RunIn:
             length = max(adhesion.length(contact.pair), adhesion.equilibrium_separation)
             self._range = _ATTRACTED * length
         self._width, self._count, self._coverage = 0, 0, 0.0
+        self._deeper = _FIRST_DEEPER  # see `_depths`
 
     @property
     def count(self) -> int:
@@ -247,7 +252,10 @@ class RunIn:
             contact = self._window(at)
             whole = self._width >= nodes
             try:
-                state = solve_at_velocity(contact, velocity)
+                flat, round_ = _depths(contact, velocity)
+                near = max(_SHALLOWER * (flat + self._deeper * round_), _LEAST * round_)
+                state = solve_at_velocity(contact, velocity, near=near)
+                self._deeper = (state.indentation - flat) / round_
                 reach = largest_reach(contact, state.indentation + self._range)
                 if whole or reach < 0.5 * spacing * self._width:
                     break
@@ -301,6 +309,20 @@ class RunIn:
                 old = body.borne[part]
                 higher = softer & (given > 0) & (bound > old)
                 body.borne[part] = np.where(higher, bound, old)
+
+
+def _depths(contact: Contact, velocity: float) -> tuple[float, float]:
+    """Indentation (m) of the impact if the hardness acted on all overlap; that of Hertz (m)."""
+    pair = contact.pair
+    work = 0.5 * mass_in_impact(pair, velocity) * velocity**2
+    hertz = Hertz(pair.radius, pair.contact_modulus)
+    volume = work / (min(contact.hardness, pair.contact_modulus) * contact.grid.cell_area)
+    gap = np.sort(contact.gap, axis=None)
+    below = np.cumsum(gap)
+    count = np.arange(1, gap.size + 1)
+    last = int(np.searchsorted(count * gap - below, volume))
+    depth = (volume + below[last - 1]) / last
+    return float(depth), float(hertz.indentation_from_energy(work))
 
 
 def nominal_area(pair: Pair, hardness: float, velocity: float) -> float:

@@ -51,7 +51,7 @@ from restitution.runs.result_warnings import (
     unresolved,
     velocities_missed,
 )
-from restitution.runs.run_in import run_in
+from restitution.runs.run_in import require_run_in, run_in
 from restitution.runs.smooth import smooth_curve
 from restitution.runs.two_scales import patch_curve, solve_patches, told
 from restitution.surfaces import describe
@@ -119,6 +119,7 @@ def run_case(
     ):
         case = with_chosen_grids(case, folder, run.warn)
         contact = case.contact(folder)
+        require_run_in(case, contact)
         if (notice := notice_of(case, folder)) is not None:
             run.warn(notice)
         solve_patches(contact, run.progress)

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from restitution.case.case import Case
-from restitution.case.impacts import ImpactsTable
+from restitution.case.impacts import ImpactsTable, Rough
+from restitution.case.roughness import Roughness
 from restitution.contact.contact import Contact, smooth
 from restitution.contact.models import COMPANION
 from restitution.curve.columns import array
@@ -27,6 +28,7 @@ from restitution.surfaces.refine import coarsen
 OTHERS = 2  # number of additional sequences, on other surfaces, for the scatter
 _OTHER_SURFACE = 500  # added to the seed of the roughness of the second body
 _OTHER_SEED = 1000  # seeds of sequences on other surfaces differ by this number
+Parts = tuple[Roughness, ...]
 _PROBES = 77  # added to the seed of the places at which COR is measured
 
 
@@ -39,12 +41,25 @@ class _Sequence:
     surfaces: tuple[Surface, Surface]
 
 
-def sequences(case: Case) -> int:
-    """Number of sequences of impacts of `case`, those for the error included."""
+def measurements(case: Case) -> int:
+    """Number of coverages at which COR is measured, in all sequences of impacts of `case`."""
     if case.impacts is None or case.impact is None:
         return 0
     count = len(case.impact.series()) if case.impacts.own_surfaces else 1
-    return count * (2 + OTHERS if case.total_error else 1)
+    levels = 1 + len(set(case.impacts.coverage or [0]))
+    return levels * count * (2 + OTHERS if case.total_error else 1)
+
+
+def require_run_in(case: Case, contact: Contact) -> None:
+    """Raise `CaseError` if the surface does not repeat, or the coverages are not possible on it."""
+    if case.impacts is None:
+        return
+    case.impacts.require_possible(contact.grid, _velocities(case), contact.pair, contact.hardness)
+    if not repeats(contact.surface):
+        raise CaseError(
+            "roughness.file: opposite edges of the scan do not match, so it does not repeat, as "
+            '[impacts] needs; set roughness.extend = "twin"'
+        )
 
 
 def run_in(
@@ -52,10 +67,9 @@ def run_in(
 ) -> dict[str, Any]:
     """Run the surfaces of `case` in, write the tables and the final surfaces; return the summary.
 
-    `contact` is the contact of the new bodies. Raises `CaseError` if a surface does not repeat.
+    `contact` is the contact of the new bodies, which `require_run_in` accepts.
     """
     table = _table(case)
-    table.require_possible(contact.grid, _velocities(case), contact.pair, contact.hardness)
     bodies = _bodies(case, folder)
     own = list(_sequences(case, contact, bodies, table.seed, progress, "run-in"))
     points = [point for one in own for point in one.points]
@@ -64,7 +78,7 @@ def run_in(
     out.put_run_in(points, tuple(tuple(one.impacts) for one in own))
     return {
         "place": table.place,
-        "rough": _rough(case),
+        "rough": _rough_bodies(case),
         "places": table.places,
         "own_surfaces": table.own_surfaces,
         "coverage_means": "number of impacts times the contact area of smooth bodies, divided by "
@@ -86,38 +100,46 @@ def _velocities(case: Case) -> list[float]:
     return case.impact.series()
 
 
-def _rough(case: Case) -> str:
-    given, yields = _table(case).rough, case.yielding().yields
-    if given is not None:
-        return given
-    bodies = list(case.bodies().values())
+def _parts(case: Case) -> tuple[Parts, Parts] | None:
+    """The tables of roughness of each body; None if each has half of the variance of all."""
+    tables = tuple(case.roughness)
+    words = _table(case).rough or [_default_rough(case)]
+    if words == ["both"]:
+        return (tables[:1], tables[1:]) if len(tables) > 1 else None
+    if len(words) == 1:
+        words = words * len(tables)
+    first, second = (
+        tuple(part for part, word in zip(tables, words, strict=True) if word == body)
+        for body in ("first", "second")
+    )
+    return first, second
+
+
+def _default_rough(case: Case) -> Rough:
+    bodies, yields = list(case.bodies().values()), case.yielding().yields
     equal = bodies[0] == bodies[1] and all(part.kind != "measured" for part in case.roughness)
     if equal and case.roughness:
         return "both"
-    return yields if yields in ("first", "second") else "first"
+    return "second" if yields == "second" else "first"
+
+
+def _rough_bodies(case: Case) -> str:
+    parts = _parts(case)
+    if parts is None or all(parts):
+        return "both"
+    return next((name for name, part in zip(("first", "second"), parts, strict=True) if part), "")
 
 
 def _bodies(case: Case, folder: Path) -> tuple[Surface, Surface]:
     """The surfaces of the two bodies."""
-    whole = case.surface(folder)
-    if not repeats(whole):
-        raise CaseError(
-            "roughness.file: opposite edges of the scan do not match, so it does not repeat, as "
-            '[impacts] needs; set roughness.extend = "twin"'
-        )
-    flat, rough = smooth(whole.grid), _rough(case)
-    if rough == "first":
-        return whole, flat
-    if rough == "second":
-        return flat, whole
-    if len(case.roughness) > 1:
-        first, rest = (
-            case.model_copy(update={"roughness": part}).surface(folder)
-            for part in (case.roughness[:1], case.roughness[1:])
-        )
-        return first, rest
-    other = _variant(case, _OTHER_SURFACE).surface(folder)
-    return _scaled(whole), _scaled(other)
+    whole, parts = case.surface(folder), _parts(case)
+    if parts is None:
+        return _scaled(whole), _scaled(_variant(case, _OTHER_SURFACE).surface(folder))
+    first, second = (
+        case.model_copy(update={"roughness": part}).surface(folder) if part else smooth(whole.grid)
+        for part in parts
+    )
+    return first, second
 
 
 def _variant(case: Case, number: int) -> Case:
@@ -158,28 +180,33 @@ def _sequences(
     for measured in groups:
         runs = RunIn(new, second, place=table.place, seed=seed)
         at = f" at {measured[0]:.3g} m/s" if table.own_surfaces else ""
-        progress(f"{words}{at}")
-        yield _sequence(runs, table, measured, seed)
+        yield _sequence(runs, table, measured, seed, _after(words + at, progress))
 
 
-def _sequence(runs: RunIn, table: ImpactsTable, measured: Sequence[float], seed: int) -> _Sequence:
+def _after(words: str, progress: Say) -> Say:
+    return lambda more: progress(words + more)
+
+
+def _sequence(
+    runs: RunIn, table: ImpactsTable, measured: Sequence[float], seed: int, progress: Say
+) -> _Sequence:
     impacts: list[RepeatedImpact] = []
-    points = _measure(runs, table, measured, seed)
+
+    def measure() -> Iterator[RunInPoint]:
+        progress(f", coverage {runs.coverage:.2g}")
+        for V in measured:
+            yield RunInPoint.of(list(runs.probe(V, table.places, seed + _PROBES)))
+
+    points = list(measure())
     following = runs.impacts(table.velocities(measured[0], seed))
     if table.count is not None:
         impacts += (next(following) for _ in range(table.count))
-        points += _measure(runs, table, measured, seed)
+        points += measure()
     for coverage in sorted(set(table.coverage or [])):
         while not impacts or coverage - runs.coverage > 0.5 * runs.coverage / len(impacts):
             impacts.append(next(following))
-        points += _measure(runs, table, measured, seed)
+        points += measure()
     return _Sequence(impacts, points, runs.surfaces)
-
-
-def _measure(
-    runs: RunIn, table: ImpactsTable, velocities: Sequence[float], seed: int
-) -> list[RunInPoint]:
-    return [RunInPoint.of(list(runs.probe(V, table.places, seed + _PROBES))) for V in velocities]
 
 
 def _with_errors(

@@ -30,7 +30,6 @@ let curve = { rows: [], figures: {}, errors: false, preview: "", under: null };
 let cursor = null; // index of the depth at the cursor; null: the deepest depth
 let pins = [];
 let surfaceKey = "";
-let finerContent = null;
 
 // ---- requests ---------------------------------------------------------------------------------
 
@@ -307,7 +306,10 @@ function showProblems(problems) {
   for (const box of document.querySelectorAll("#groups .problem")) box.hidden = true;
   for (const box of document.querySelectorAll("#groups [aria-invalid]")) box.removeAttribute("aria-invalid");
   const rest = [];
-  for (const [key, words] of Object.entries(problems)) {
+  for (let [key, words] of Object.entries(problems)) {
+    // A message that is about a key of the case starts with this key.
+    const own = key ? null : /^([a-z_]+(?:\.[a-z_]+)?): (.*)$/s.exec(words);
+    if (own) [, key, words] = own;
     const field = fieldOf(key, words);
     const box = field && $(`${idOf(field)}-problem`);
     if (!box) { rest.push(key ? `${key}: ${words}` : words); continue; }
@@ -321,12 +323,7 @@ function showProblems(problems) {
   $("general").hidden = !rest.length;
 }
 
-// If a message of the solver is about a key of the case, it starts with this key.
-function showError(message) {
-  const match = /^([a-z_]+(?:\.[a-z_]+)?): (.*)$/s.exec(message);
-  const known = match && fieldOf(match[1], match[2]);
-  showProblems(known ? { [match[1]]: match[2] } : { "": message });
-}
+const showError = (message) => showProblems({ "": message });
 
 // ---- the curve while values change ------------------------------------------------------------
 
@@ -433,7 +430,7 @@ async function runWhole() {
   const sent = structuredClone(content), busy = { since: performance.now() };
   say("computing the errors…", busy);
   try {
-    await stream("run", { tab, content: sent, grids: 1 }, mine.signal, (line) => {
+    await stream("run", { tab, content: firstImpact(), grids: 1 }, mine.signal, (line) => {
       if (running !== mine || asking) return;
       if (line.progress) say(`computing the errors: ${line.progress}`, busy);
       else if (line.problems) showProblems(line.problems);
@@ -722,17 +719,46 @@ async function useText() {
   changed();
 }
 
-let finer = null;
+// The case without its many impacts, which only a job computes.
+function firstImpact() {
+  const { impacts, ...rest } = structuredClone(content);
+  return rest;
+}
 
-async function runFiner() {
-  if (finer) return;
+// Runs in the background, by the id of their button.
+const JOBS = {
+  finer: {
+    values: () => ({ content: firstImpact(), grids: Number($("grids").value) }),
+    figure: (line) => line.figures.velocity || line.figures.indentation,
+    words: (line) => {
+      const worst = Math.max(...line.results.map((row) => row.discretisation_error || 0));
+      return ` on grids refined ${line.grids.join(", ")} times; discretisation error of COR at most ${digits(worst, 2)}`;
+    },
+  },
+  worn: {
+    missing: () => (content.impacts === undefined ? "give a coverage in the form, which has one for depths given as impact velocities" : ""),
+    values: () => ({ content: structuredClone(content), grids: 1 }),
+    figure: (line) => line.worn_figure,
+    words: (line) => {
+      fill("worn-numbers", Object.values(WORN), (line.worn || []).map((row) => Object.keys(WORN).map((key) => digits(row[key], 3))));
+      return "";
+    },
+  },
+};
+const WORN = { impact_velocity_m_per_s: "velocity (m/s)", coverage: "coverage", impacts: "impacts", restitution: "COR", total_error: "total error", restitution_5: "5 % of places below", restitution_95: "95 % of places below" };
+const jobs = {}; // the requests under way
+const finished = {}; // the last results: { sent, figure }
+
+async function runJob(name) {
+  const job = JOBS[name], tell = (words) => { $(`${name}-status`).textContent = words; };
+  const missing = job.missing ? job.missing() : "";
+  if (jobs[name] || missing) { if (missing) tell(missing); return; }
   const mine = new AbortController();
-  finer = mine;
-  $("cancel").hidden = false;
-  $("finer").disabled = true;
-  const tell = (words) => { $("finer-status").textContent = words; };
+  jobs[name] = mine;
+  $(`${name}-cancel`).hidden = false;
+  $(name).disabled = true;
   tell("starting…");
-  const sent = { tab, content: structuredClone(content), grids: Number($("grids").value) };
+  const sent = { tab, ...job.values() };
   try {
     await stream("run", sent, mine.signal, (line) => {
       if (line.progress) tell(line.progress);
@@ -740,28 +766,26 @@ async function runFiner() {
       else if (line.error) tell(line.error);
       else if (line.problems) tell(Object.entries(line.problems).map(([key, words]) => `${key}: ${words}`).join("; "));
       else if (line.results) {
-        finerContent = sent;
-        finerFigures = line.figures;
-        $("finer-cor").hidden = false;
-        drawFiner();
-        const worst = Math.max(...line.results.map((row) => row.discretisation_error || 0));
-        tell(`complete in ${line.seconds.toFixed(1)} s on grids refined ${line.grids.join(", ")} times; discretisation error of COR at most ${digits(worst, 2)}${line.failure ? `; ${line.failure}` : ""}`);
-        $("take-of").options[1].disabled = false;
+        finished[name] = { sent, figure: job.figure(line) };
+        $(`${name}-cor`).hidden = false;
+        drawJob(name);
+        tell(`complete in ${line.seconds.toFixed(1)} s${job.words(line)}${line.failure ? `; ${line.failure}` : ""}`);
+        $("take-of").querySelector(`[value=${name}]`).disabled = false;
       }
     });
   } catch (error) {
     tell(error.name === "AbortError" ? "cancelled" : lostServer(error));
   }
-  finer = null;
-  $("cancel").hidden = true;
-  $("finer").disabled = false;
+  delete jobs[name];
+  $(`${name}-cancel`).hidden = true;
+  $(name).disabled = false;
 }
 
-let finerFigures = null;
-function drawFiner() { if (finerFigures) draw("finer-cor", finerFigures.velocity || finerFigures.indentation); }
+function drawJob(name) { if (finished[name]) draw(`${name}-cor`, finished[name].figure); }
 
 async function take(what) {
-  const of = $("take-of").value === "finer" && finerContent ? finerContent : { content, grids: 1 };
+  const done = finished[$("take-of").value];
+  const of = done ? done.sent : { content: what === "case" ? content : firstImpact(), grids: 1 };
   const values = { tab, content: of.content, grids: of.grids, what, code: $("code").value, velocity: what === "export" ? $("code-velocity").value : "" };
   $("take-status").textContent = "preparing the file…";
   try {
@@ -788,8 +812,10 @@ function listen() {
   $("case-text").addEventListener("input", () => { textEdited = true; });
   $("case-text").addEventListener("blur", updateText);
   $("use-text").addEventListener("click", useText);
-  $("finer").addEventListener("click", runFiner);
-  $("cancel").addEventListener("click", () => finer && finer.abort());
+  for (const name of Object.keys(JOBS)) {
+    $(name).addEventListener("click", () => runJob(name));
+    $(`${name}-cancel`).addEventListener("click", () => jobs[name] && jobs[name].abort());
+  }
   for (const button of document.querySelectorAll("[data-take]")) button.addEventListener("click", () => take(button.dataset.take));
   $("code").append(...form.codes.map((code) => element("option", {}, code)));
   const holdsFile = (event) => [...event.dataTransfer.types].includes("Files");
@@ -800,7 +826,7 @@ function listen() {
     $("drop").hidden = true;
     if (event.dataTransfer.files[0]) upload(event.dataTransfer.files[0]);
   });
-  dark.addEventListener("change", () => { drawCurves(); askMaps(); drawFiner(); surfaceKey = ""; changed(); });
+  dark.addEventListener("change", () => { drawCurves(); askMaps(); Object.keys(JOBS).forEach(drawJob); surfaceKey = ""; changed(); });
 }
 
 async function start() {

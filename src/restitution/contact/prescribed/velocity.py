@@ -25,7 +25,9 @@ _MOST_STEPS = 8  # largest number of Newton steps
 
 
 @typed
-def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None = None) -> State:
+def solve_at_velocity(
+    contact: Contact, velocity: float, *, start: State | None = None, near: float | None = None
+) -> State:
     """Load the undeformed bodies until the loading work is ½ m* V².
 
     m* is the reduced mass. The relative error of the velocity is at most 1e-6; if the work is
@@ -35,12 +37,14 @@ def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None 
         contact: Contact to load.
         velocity: Impact velocity V (m/s), positive.
         start: State of the same contact at a smaller velocity, used as in `solve`.
+        near: Expected indentation (m), a first guess that saves solves.
 
     Returns:
         State at the deepest point of the impact.
 
     Raises:
-        CaseError: The velocity is not positive, a body has no density, or the contact is periodic.
+        CaseError: The velocity or `near` is not positive, a body has no density, or the contact is
+            periodic.
         DomainError: The contact reaches the edge of the grid.
         NotConvergedError: The loading work jumps past ½ m* V², or a solve did not converge.
     """
@@ -49,10 +53,12 @@ def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None 
         raise CaseError(
             "velocity: the bodies of a periodic contact have infinite mass; call solve()"
         )
+    if near is not None and not 0 < near < math.inf:
+        raise CaseError(f"near: {near} m is not a positive depth")
     work = 0.5 * mass * velocity**2
     integrated = interface_of(contact).integrates_work(contact)
     tolerance = _INTEGRATED_TOLERANCE if integrated else VELOCITY_TOLERANCE
-    search = _Search(contact, work, start)
+    search = _Search(contact, work, start, near)
     depth = search.depth(0.3 * tolerance)
     state = search.at(depth)
     require_inside_grid(state)
@@ -105,8 +111,10 @@ class _Search:
     jumps, it can fail; a bracketing root finder then takes over.
     """
 
-    def __init__(self, contact: Contact, work: float, start: State | None) -> None:
-        self._contact, self._work, self._start = contact, work, start
+    def __init__(
+        self, contact: Contact, work: float, start: State | None, near: float | None
+    ) -> None:
+        self._contact, self._work, self._start, self._near = contact, work, start, near
         self.states: dict[float, State] = {}
         self._interface = interface_of(contact)
 
@@ -144,6 +152,8 @@ class _Search:
             return path[1].indentation
         if self._start is not None and (depth := self._step(self._start)) is not None:
             return depth
+        if self._near is not None:
+            return self._near
         # Hertz's depth is only a first guess: yield and roughness make the contact deeper.
         smooth = Hertz(contact.pair.radius, contact.pair.contact_modulus)
         shallow = float(smooth.indentation_from_energy(self._work))
