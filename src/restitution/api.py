@@ -257,7 +257,7 @@ def export(
         coverage: How many times earlier impacts have covered the surfaces (dimensionless); None for
             the first impact. The cases need the table [impacts].
         size: Coarse-grained particles are this many times as large as the computed ones, with the
-            same e(V).
+            same e(V) (dimensionless).
         units: Units of the commands for LAMMPS: "si", "cgs" or "micro".
 
     Returns:

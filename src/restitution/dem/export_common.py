@@ -220,7 +220,7 @@ class Export:
     def _closest(self) -> list[str]:
         """How far e(V) of the files, and of the closest law of the code, is off for each pair."""
         said = [(pair, closest(pair, self.code, self.own)) for pair in self.pairs]
-        return [f"Pair {pair.i} {pair.j}: {text}." for pair, text in said if text]
+        return [f"  {pair.i} {pair.j}: {text}." for pair, text in said if text]
 
     def closest_note(self, sign: str) -> str:
         """How close the laws of the code come to e(V) of the worst pair, as comments."""
