@@ -1,6 +1,7 @@
 # Everything happens in a local environment (.venv); nothing else on the machine is touched.
 PYTHON ?= python3
 PEER_PYTHON ?= python3.11
+NEWER_PYTHON ?= python3.12
 VENV := .venv
 BIN := $(VENV)/bin
 BUILD := pyproject.toml setup.py $(foreach kind,cpp h,$(wildcard src/restitution/numerics/*.$(kind) src/restitution/numerics/*/*.$(kind)))
@@ -11,7 +12,7 @@ FAST_TESTS := tests/theory tests/numerics tests/test_collision.py
 KERNEL_TESTS := tests/numerics/test_compiled.py tests/numerics/convolution/test_operators.py
 WITHOUT_COMPILER := CC=/bin/false CXX=/bin/false
 
-.PHONY: help demo test test-programs test-fast test-kernels test-clang test-kratos wheel test-wheel fuzz mutation lint docs docs-links bench bench-peers bench-periodic clean
+.PHONY: help demo test test-programs test-fast test-kernels test-clang test-kratos test-drake wheel test-wheel fuzz mutation lint docs docs-links bench bench-peers bench-periodic clean
 
 .DEFAULT_GOAL := demo
 
@@ -57,6 +58,16 @@ test-clang: $(VENV)/test.installed  ## the same for kernels that Clang compiles
 
 test-kratos: $(VENV)/test.installed .venv-kratos/installed  ## the export to Kratos DEM in Kratos 10.4, in an environment of its own
 	KRATOS_PYTHON=$(CURDIR)/.venv-kratos/bin/python DUCC0_NUM_THREADS=1 $(BIN)/pytest tests/dem/test_kratos.py
+
+test-drake: $(VENV)/test.installed .venv-drake/installed  ## the export to Drake in Drake 1.58, which needs Python 3.12 or later (NEWER_PYTHON)
+	DRAKE_PYTHON=$(CURDIR)/.venv-drake/bin/python DUCC0_NUM_THREADS=1 $(BIN)/pytest tests/dem/test_drake.py
+
+.venv-drake/installed:
+	$(NEWER_PYTHON) -c 'import sys; sys.exit(0 if sys.version_info >= (3, 12) else "Drake 1.58 needs Python 3.12 or newer: make test-drake NEWER_PYTHON=python3.13")'
+	$(NEWER_PYTHON) -m venv --clear .venv-drake
+	echo '*' > .venv-drake/.gitignore
+	.venv-drake/bin/python -m pip install --quiet --disable-pip-version-check drake==1.58.0
+	@touch $@
 
 .venv-kratos/installed:
 	$(PYTHON) -m venv --clear .venv-kratos
@@ -119,7 +130,7 @@ bench-periodic: $(VENV)/test.installed $(PEERS)  ## time periodic contacts besid
 	@touch $@
 
 clean:  ## remove the environments, the demo, and what was built
-	rm -rf $(VENV) .venv-peers .venv-kratos demo build dist docs/_build docs/auto_gallery
+	rm -rf $(VENV) .venv-peers .venv-kratos .venv-drake demo build dist docs/_build docs/auto_gallery
 
 $(BIN)/python:
 	@$(PYTHON) -c 'import sys; sys.exit(0 if sys.version_info >= (3, 11) else "restitution needs Python 3.11 or newer: make PYTHON=python3.11")'

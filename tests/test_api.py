@@ -113,6 +113,7 @@ def test_a_law_is_made_and_exported(results, cli, tmp_path):
         assert [path.name for path in files] == [
             "restitution.lmp",
             "restitution_kokkos.lmp",
+            "restitution_viscoelastic.lmp",
             "match_velocity.py",
             "collision.in",
             "restitution_lammps.txt",

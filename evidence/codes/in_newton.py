@@ -1,8 +1,8 @@
 # needs newton==1.8.0 warp-lang==1.19.0
 """e of a sphere (R 0.1 m, 1 kg, 1 m/s) on a plane in Newton on the CPU, by solver.
 
-The spring and dashpot of the semi-implicit solver are chosen for e = 0.5 by the textbook's formula
-for a dashpot that acts in both directions.
+The spring and dashpot of the semi-implicit and Featherstone solvers are chosen by the textbook's
+formula for a dashpot that acts in both directions.
 """
 
 import math
@@ -47,12 +47,14 @@ print("RESULT newton", version("newton"))
 for e in (1.0, 0.8, 0.5, 0.25):
     ratio = -math.log(e) / math.hypot(math.pi, math.log(e))
     kd = 2 * ratio * math.sqrt(KE)
-    row = [rebound(newton.solvers.SolverSemiImplicit, step, ke=KE, kd=kd) for step in (1e-3, 1e-4)]
-    print(
-        f"RESULT semi-implicit, dashpot for e {e}, steps of 1 and 0.1 ms: "
-        + ", ".join(f"{x:.4f}" for x in row),
-        flush=True,
-    )
+    for name in ("SemiImplicit", "Featherstone"):
+        solver = getattr(newton.solvers, f"Solver{name}")
+        row = [rebound(solver, step, ke=KE, kd=kd) for step in (1e-3, 1e-4)]
+        print(
+            f"RESULT {name}, dashpot for e {e}, steps of 1 and 0.1 ms: "
+            + ", ".join(f"{x:.4f}" for x in row),
+            flush=True,
+        )
     xpbd = [
         rebound(partial(newton.solvers.SolverXPBD, enable_restitution=on), step, restitution=e)
         for on in (False, True)

@@ -240,6 +240,8 @@ def export(
     out: Folder,
     velocity: str | float | None = None,
     coverage: float | None = None,
+    size: float = 1.0,
+    units: str = "si",
 ) -> list[Path]:
     """Write laws as the input of a DEM code, as `restitution export` does.
 
@@ -247,13 +249,16 @@ def export(
         laws: One law or several, one for each pair of particles. Each is a `Law`, or a folder that
             holds a law or results (see `law_of`). The folder of a mixture gives all of its laws.
         to: DEM code ("lammps", "liggghts", "yade", "mercurydpm", "edem", "kratos", "mujoco",
-            "drake", "lammps-adhesive", "liggghts-adhesive"), "c" or "python" for other codes, or
-            "csv" to write a table.
+            "drake", "lammps-adhesive", "liggghts-adhesive", "yade-adhesive"), "c" or "python"
+            for other codes, or "csv" to write a table.
         out: Folder for the files; existing files are never overwritten.
         velocity: Impact velocity, such as "1 m/s", or a number (m/s). It is optional for
             "c", "python" and "csv".
         coverage: How many times earlier impacts have covered the surfaces (dimensionless); None for
             the first impact. The cases need the table [impacts].
+        size: Coarse-grained particles are this many times as large as the computed ones, with the
+            same e(V) (dimensionless).
+        units: Units of the commands for LAMMPS: "si", "cgs" or "micro".
 
     Returns:
         The files that were written.
@@ -277,4 +282,4 @@ def export(
     if coverage is not None:
         read = [with_fits(at_coverage(law, coverage)) for law in read]
     speed = velocity_of(velocity) if isinstance(velocity, str) else velocity
-    return write_export(export_texts(read, to, speed), Path(out))
+    return write_export(export_texts(read, to, speed, size=size, units=units), Path(out))

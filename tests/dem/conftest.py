@@ -156,9 +156,14 @@ def kratos() -> Program:
 
 @pytest.fixture(scope="session")
 def python_with() -> Callable[[str, str], Program]:
-    """Python that runs a script with a module of the extra `robotics`; skips where missing."""
+    """Python that runs a script with a module of the extra `robotics`; skips where missing.
+
+    Drake may have a Python of its own, DRAKE_PYTHON (`make test-drake`).
+    """
 
     def make(module, script):
+        if module == "pydrake" and (python := os.environ.get("DRAKE_PYTHON")):
+            return Program(python, [script], dict(os.environ))
         if importlib.util.find_spec(module) is None:
             pytest.skip(f"{module} is not installed: pip install .[robotics]")
         return Program(sys.executable, [script], dict(os.environ))

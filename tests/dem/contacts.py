@@ -8,9 +8,9 @@ from restitution.laws.law import LawPoint
 from restitution.theory import JKR, ThorntonNing
 
 
-def sticking_law(law, first, points=9):
-    """A law of two equal smooth elastic spheres with adhesion, by JKR; it sticks at first."""
-    base = law(first, first, work_of_adhesion=0.05)
+def sticking_law(law, first, points=9, second=None):
+    """A law of two smooth elastic bodies, equal without `second`, by JKR; it sticks at first."""
+    base = law(first, second or first, work_of_adhesion=0.05)
     theory = JKR(base.radius, base.contact_modulus, 0.05)
     V_s = float(theory.sticking_velocity(base.mass))
     rows = []

@@ -1,5 +1,6 @@
-"""Adhesive variants of the exports: pull-off, sticking and e in LAMMPS and LIGGGHTS."""
+"""Adhesive variants of the exports: pull-off, sticking and e in LAMMPS, LIGGGHTS and YADE."""
 
+import json
 import re
 from dataclasses import replace
 
@@ -9,11 +10,22 @@ import pytest
 from contacts import sticking_law
 from restitution.dem.codes.lammps_adhesive import write as to_lammps
 from restitution.dem.codes.liggghts_adhesive import write as to_liggghts
+from restitution.dem.codes.yade_adhesive import write as to_yade
 from restitution.dem.pair_table import pair_table
 from restitution.errors import CaseError
 from tolerance import approx
 
 WRITERS = {"lammps": to_lammps, "liggghts": to_liggghts}
+# Several collisions in one process, because YADE takes seconds to start.
+DRIVER = """
+import json, sys
+for job in json.load(open("jobs.json")):
+    sys.argv = ["collision_yade.py", *map(str, job)]
+    try:
+        exec(open("collision_yade.py").read(), {"__name__": "__main__"})
+    except SystemExit:
+        pass
+"""
 SHARES = (1.3, 1.8, 3.0, 6.0, 15.0)  # impact velocities over the sticking velocity
 
 
@@ -57,6 +69,33 @@ def test_lammps_has_the_pull_off_force(sticky, lammps, texts):
     # After the turn; on the approach damping adds to the jump into contact.
     tension = max(forces[int(np.argmin(forces)) :])
     assert tension == approx(sticky.points[-1].pull_off_force, rel=0.02)
+
+
+def test_yade_follows_the_law_and_sticks(sticky, law, yade, texts):
+    plate = replace(sticky.first, name="plate", radius=None)
+    on_plate = sticking_law(law, sticky.first, second=plate)
+    files = to_yade(pair_table([sticky, on_plate]), 0.3)
+    said = " ".join(files["restitution_yade.py"].replace("#", " ").split())
+    assert float(re.search(r"above, e is off by up to (\S+)\.", said)[1]) < 0.02
+    jobs = [(V, 1, j) for j, found in ((1, sticky), (2, on_plate))
+            for V in found.sticks_below * np.array([0.6, 0.97, *SHARES])]  # fmt: skip
+    folder = texts(files | {"driver.py": DRIVER, "jobs.json": json.dumps(jobs)})
+    e = yade.ratios(folder, "driver.py")
+    asked = [(sticky, on_plate)[j - 1].at(V).restitution for V, _, j in jobs]
+    assert asked[:2] == e[:2] == [0, 0]
+    assert e == approx(asked, abs=0.012)
+
+
+def test_yade_has_the_pull_off_force(sticky, yade, texts):
+    files = to_yade(pair_table([sticky]), 0.3)
+    force = sticky.points[-1].pull_off_force
+    script = files["collision_yade.py"].replace(
+        'print("restitution = 0.0")',
+        'print("attraction = %g" % max(c.phys.adhesionForce for c in O.interactions))',
+    )
+    V = 0.8 * sticky.sticks_below
+    said = yade.says(texts(files | {"collision_yade.py": script}), "collision_yade.py", V, 1, 1)
+    assert float(re.search(r"attraction = (\S+)", said)[1]) == approx(force, rel=0.02)
 
 
 @pytest.mark.parametrize("code", WRITERS)

@@ -1,11 +1,14 @@
 """The tables for EDEM; EDEM itself is not run."""
 
 import csv
+import math
 from dataclasses import replace
 
+from contacts import sticking_law
 from restitution.dem.codes.edem import write
 from restitution.dem.pair_table import pair_table
 from restitution.laws.law import FittedLaw
+from restitution.theory import EEPA
 from tolerance import approx
 
 SPRINGS = FittedLaw(
@@ -75,6 +78,28 @@ def test_laws_with_walls_only_are_enough(on_wall):
 def test_pairs_that_stick_are_named(law, constant):
     said = write(pair_table([constant(law(), 0.0)]), 1.0)["restitution_edem.csv"]
     assert "# WARNING: pair 1 1 sticks at 1" in said
+
+
+def test_adhesive_pairs_have_jkr_and_eepa_with_their_misfit(law):
+    sticky = sticking_law(law, replace(law().first, radius=5e-6, youngs_modulus=3e9))
+    force = sticky.points[-1].pull_off_force
+    plate = replace(sticky.first, name="plate", radius=None)
+    row, dry = rows(
+        write(pair_table([sticky, law(sticky.first, plate)]), 0.3)["restitution_edem.csv"]
+    )
+    gamma = float(row["jkr_v2_surface_energy_J_per_m2"])
+    assert gamma == approx(force / (1.5 * math.pi * sticky.radius), rel=1e-5)
+    # The law is JKR's, which is what JKR V2 has without further damping.
+    assert float(row["jkr_v2_sticks_below_m_per_s"]) == approx(sticky.sticks_below, rel=0.04)
+    assert float(row["jkr_v2_worst"]) < 0.03
+    assert float(row["jkr_v2_restitution"]) > 0.97
+    ratio, k1 = float(row["eepa_plasticity_ratio"]), 4 / 3 * sticky.contact_modulus
+    k1 *= sticky.radius**0.5
+    V, e = sticky.column("velocity"), sticky.column("restitution")
+    off = abs(EEPA(k1, k1 / (1 - ratio), 0.0, -force, 1.5).restitution(V, sticky.mass) - e).max()
+    assert float(row["eepa_worst"]) == approx(float(off), rel=1e-3)
+    assert float(row["eepa_f0_N"]) == approx(-force, rel=1e-5)
+    assert dry["jkr_v2_restitution"] == dry["eepa_f0_N"] == ""
 
 
 def test_names_are_escaped_and_warnings_carried(hostile, law):

@@ -8,6 +8,7 @@ from dataclasses import replace
 import pytest
 
 from restitution.dem.codes.mercurydpm import write
+from restitution.dem.fits import with_fits
 from restitution.dem.pair_table import pair_table
 from restitution.errors import CaseError
 from tolerance import approx
@@ -63,6 +64,46 @@ def test_it_is_valid_beside_stand_ins(mixed, hostile, law, texts):
         command = [compiler, "-std=c++17", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-I."]
         done = subprocess.run([*command, "f.cc"], cwd=folder, capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
+
+
+PLASTIC_SPECIES = """
+#pragma once
+struct Plastic {
+    void setPlasticParameters(Mdouble k1, Mdouble k2, Mdouble kc, Mdouble phi);
+    void setDissipation(Mdouble d);
+    void setSlidingStiffness(Mdouble k);
+    void setSlidingFrictionCoefficient(Mdouble mu);
+};
+struct LinearPlasticViscoelasticFrictionSpecies : Plastic {
+    using MixedSpeciesType = Plastic;
+    void setDensity(Mdouble rho);
+};
+"""
+
+
+def test_the_plastic_species_have_the_fitted_law_and_its_misfit(mixed, texts):
+    compiler = shutil.which("g++") or pytest.skip("g++ is not installed")
+    laws = [with_fits(law) for _, _, law in mixed.pairs()]
+    files = write(pair_table(laws), 1.0)
+    text = files["restitution_mercury_plastic.h"]
+    calls = re.findall(r"setPlastic\((?!S)(.*), (\S+), (\S+), (\S+), (\S+), (\S+), (\S+)\);", text)
+    assert len(calls) == 3 + 3  # three types, three mixed pairs
+    fit = next(fit for fit in laws[1].laws if fit.name == "luding")
+    values = next(values for to, *values in calls if "species[0], species[1]" in to)
+    assert [float(value) for value in values[:4]] == approx([*fit.parameters.values()], rel=1e-8)
+    said = " ".join(text.replace("//", " ").split())
+    assert f"Pair 1 2: e(V) is off by up to {fit.worst:.2g}; it needs" in said
+    assert "needs time steps of at most" in said
+    notes = " ".join(files["restitution_mercurydpm.txt"].split())
+    assert f"of MercuryDPM: restitution_mercury_plastic.h, {fit.worst:.2g}" in notes
+    main = '#include "restitution_mercury_plastic.h"\nvoid f(DPMBase& d) { addPlasticSpecies(d); }'
+    folder = texts({**files, "DPMBase.h": DPM_BASE, "f.cc": main})
+    (folder / "Species").mkdir()
+    header = folder / "Species" / "LinearPlasticViscoelasticFrictionSpecies.h"
+    header.write_text(PLASTIC_SPECIES)
+    command = [compiler, "-std=c++17", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-I."]
+    done = subprocess.run([*command, "f.cc"], cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
 
 
 def test_a_wall_keeps_its_density(law):

@@ -83,7 +83,7 @@ def test_scripts_are_python(exports, texts):
         if name.endswith(".py")
     }
     assert {name.split("_")[1] for name in scripts} == {
-        "drake", "kratos", "lammps", "liggghts", "mujoco", "python", "yade"
+        "drake", "kratos", "lammps", "liggghts", "mujoco", "python", "yade", "yade-adhesive"
     }  # fmt: skip
     for name, text in scripts.items():
         compile(text, name, "exec")

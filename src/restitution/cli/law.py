@@ -15,7 +15,7 @@ from restitution.cli.console import (
     warn,
     warn_once,
 )
-from restitution.cli.parameters import ExportFormat, FigureFormat
+from restitution.cli.parameters import ExportFormat, FigureFormat, UnitSystem
 from restitution.dem.export import export as exported
 from restitution.dem.export import limit, unset, write_export
 from restitution.dem.fits import fit_law as law_of
@@ -87,13 +87,19 @@ def _table(laws: "tuple[FittedLaw, ...]") -> Table:
 
 
 def export(
-    laws: list[Path], to: ExportFormat, out: Path, velocity: str | None, coverage: str | None
+    laws: list[Path],
+    to: ExportFormat,
+    out: Path,
+    velocity: str | None,
+    coverage: str | None,
+    size: float,
+    units: UnitSystem,
 ) -> None:
     read = read_laws(laws)
     if coverage is not None:
         read = [with_fits(at_coverage(law, coverage_of(coverage))) for law in read]
     at = None if velocity is None else velocity_of(velocity)
-    texts = exported(read, to.value, at)
+    texts = exported(read, to.value, at, size=size, units=units.value)
     with warn_once() as warn:
         for law in read:
             for warning in law.warnings:

@@ -126,8 +126,10 @@ class FigureFormat(StrEnum):
 ExportFormat = StrEnum(
     "ExportFormat",
     "lammps liggghts yade mercurydpm edem kratos mujoco drake lammps-adhesive liggghts-adhesive "
-    "c python csv",
+    "yade-adhesive c python csv",
 )
+
+UnitSystem = StrEnum("UnitSystem", "si cgs micro")
 
 CaseFile = Annotated[Path, given("CASE", "Case file (TOML).")]
 OutFolder = Annotated[Path, output("OUT", "Folder for the results; new or empty.")]

@@ -17,6 +17,7 @@ from restitution.cli.parameters import (
     OutFolder,
     Resume,
     Scheduler,
+    UnitSystem,
     WorkerCount,
     flag,
     given,
@@ -371,6 +372,13 @@ def export(
             show_default="the first impact",
         ),
     ] = None,
+    size: Annotated[
+        float,
+        option("FACTOR", "Coarse-grained particles, FACTOR times as large as the computed ones."),
+    ] = 1.0,
+    units: Annotated[
+        UnitSystem, one_of(UnitSystem, "--units", help="Units of the commands, for LAMMPS.")
+    ] = UnitSystem.si,
 ) -> None:
     """Write the input of a DEM code to OUT, with the COR of every pair at VELOCITY.
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from restitution.dem.pair import contact_time, pull_off_force, unknown_pull_off
+from restitution.dem.pair import adhesive_time, contact_time, pull_off_force, unknown_pull_off
 from restitution.errors import CaseError
 from restitution.laws.law import Array, Law
 from restitution.theory import JKR, Hertz
@@ -27,15 +27,18 @@ class DampedAdhesion:
     """Force (N) against indentation `depth` (m), and damping (kg/s) for the strength 1.
 
     A contact begins at the indentation 0 and ends at the first node of the tables. `largest` is
-    the largest strength.
+    the largest strength. Where the whole force is tensile, the damping force is at most `cap` (N).
     """
 
     depth: Array
     force: Array
     damping: Array
     largest: float
+    cap: float = math.inf
 
-    def restitution(self, velocity: Array, mass: float, strength: float, time: Array) -> Array:
+    def restitution(
+        self, velocity: Array, mass: float, strength: float | Array, time: Array
+    ) -> Array:
         """e at `velocity` (m/s); `time` (s) is the duration of each contact, at least."""
         V = np.asarray(velocity, dtype=float)
         x, v, e = np.zeros_like(V), V.copy(), np.full(V.shape, np.nan)
@@ -43,16 +46,18 @@ class DampedAdhesion:
         dt = time / _STEPS
 
         def rate(x: Array, v: Array) -> Array:
-            damping = np.interp(x, self.depth, self.damping)
-            return np.asarray(
-                -(np.interp(x, self.depth, self.force) + strength * damping * v) / mass
-            )
+            force = np.interp(x, self.depth, self.force)
+            damping = strength * np.interp(x, self.depth, self.damping) * v
+            free = (force + damping >= 0) | (damping >= -self.cap)
+            return np.asarray(-(force + np.where(free, damping, -self.cap)) / mass)
 
         for _ in range(_LONGEST * _STEPS):
             y, w = x + 0.5 * dt * v, v + 0.5 * dt * rate(x, v)
-            x, v = x + dt * w, v + dt * rate(y, w)
-            parted = np.isnan(e) & (x < self.depth[0]) & (v < 0)
-            e[parted] = -v[parted] / V[parted]
+            before, x, u, v = x, x + dt * w, v, v + dt * rate(y, w)
+            parted = np.isnan(e) & (x < self.depth[0]) & (u < 0)
+            share = (before[parted] - self.depth[0]) / (before[parted] - x[parted])
+            there = u[parted] + share * (v[parted] - u[parted])
+            e[parted] = np.maximum(-there, 0.0) / V[parted]
             # Bodies that come back before they part have too little energy to part later.
             e[np.isnan(e) & receding & (v > 0)] = 0.0
             receding |= v < 0
@@ -148,7 +153,7 @@ def fit_damping(model: DampedAdhesion, law: Law, force: float) -> AdhesiveFit:
     V = np.array([*near, *above])
     e = law.restitution(V)
     weights = np.array([_WEIGHT] * len(near) + [1.0] * _POINTS)
-    time = np.minimum(contact_time(law) * V**-0.2, _adhesive_time(law, force))
+    time = np.minimum(contact_time(law) * V**-0.2, adhesive_time(law, force))
 
     def miss(logarithm: float) -> float:
         strength = model.largest * math.exp(logarithm)
@@ -178,19 +183,12 @@ def _sticks_below(restitution: Callable[[Array, Array], Array], law: Law, force:
     """The velocity (m/s) from which the model rebounds, among 80 from 0.3 of that of the law."""
     scale = law.sticks_below or law.lowest
     V = scale * np.geomspace(0.3, 3.0, 80)
-    time = np.minimum(contact_time(law) * V**-0.2, _adhesive_time(law, force))
+    time = np.minimum(contact_time(law) * V**-0.2, adhesive_time(law, force))
     sticks = np.flatnonzero(restitution(V, time) == 0)
     if not sticks.size:
         return 0.0
     k = int(sticks[-1])
     return float(V[k] if k + 1 == V.size else math.sqrt(V[k] * V[k + 1]))
-
-
-def _adhesive_time(law: Law, force: float) -> float:
-    """Half a period (s) on the stiffness at the indentation at which Hertz's force is `force`."""
-    depth = float(Hertz(law.radius, law.contact_modulus).indentation(force))
-    stiffness = 2 * law.contact_modulus * math.sqrt(law.radius * depth)
-    return math.pi * math.sqrt(law.mass / stiffness)
 
 
 def _critical(law: Law) -> float:

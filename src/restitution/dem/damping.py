@@ -7,17 +7,22 @@
   Trans. Syst. Man Cybern. A 29 (1999) 566).
 * Hertz with a constant damping γ until x = 0: in units of L = (mV²/((4/3)E* R*^½))^⅖ and L/V, x″ =
   −x^{3/2} − g x′ with g = γL/(mV), which is proportional to V^{−⅕}; integrated numerically.
+* Hertz with a damping η m a, a the contact radius (viscoelastic: N. V. Brilliantov et al., Phys.
+  Rev. E 53 (1996) 5382), until x = 0: x″ = −x^{3/2} − g x^{1/2} x′, g = η (R* L)^½ L/V ∝ V^⅕.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import cache
 
+import numpy as np
 from scipy.integrate import solve_ivp
-from scipy.optimize import brentq
+from scipy.interpolate import CubicSpline
+from scipy.optimize import brentq, minimize_scalar
 
-from restitution.laws.law import Law
+from restitution.laws.law import Array, Law
 
 # The equation for c = dV is given at the top of this file. If 1 − e is below this value, the
 # logarithm in this equation is replaced by the first terms of its power series in c.
@@ -29,6 +34,8 @@ _TOLERANCE = 1e-12  # tolerance of root finding
 _SMALL = 1e-6
 # Largest ζ in the search for a given e; e is below 0.001 for ζ = 20.
 _LARGEST_DAMPING = 20.0
+# Range of g of the viscoelastic Hertz contact: e is 0.9999 and 1e-4 at its ends.
+_LEAST, _MOST = 1e-4, 30.0
 
 
 def dashpot_restitution(ratio: float) -> float:
@@ -74,11 +81,12 @@ def hunt_crossley_restitution(dissipation: float) -> float:
     return -math.expm1(-u) / c
 
 
-def hertz_restitution(damping: float) -> float:
-    """e of a Hertz contact with the dimensionless damping g; 0 if there is no rebound."""
+def hertz_restitution(damping: float, power: float = 0.0) -> float:
+    """e of a Hertz contact with the dimensionless damping g x^`power`; 0 if there is no rebound."""
 
     def slope(_: float, y: tuple[float, float]) -> list[float]:
-        return [y[1], -(max(y[0], 0.0) ** 1.5) - damping * y[1]]
+        x = max(y[0], 0.0)
+        return [y[1], -(x**1.5) - damping * x**power * y[1]]
 
     def parted(t: float, y: tuple[float, float]) -> float:
         return y[0] if t > 0 else 1.0
@@ -97,6 +105,38 @@ def hertz_damping(law: Law, velocity: float, restitution: float) -> float:
 def hertz_restitution_at(law: Law, damping: float, velocity: float) -> float:
     """e of a Hertz contact with the damping coefficient γ (kg/s) at `velocity` (m/s)."""
     return hertz_restitution(damping * _length(law, velocity) / (law.mass * velocity))
+
+
+def viscoelastic_restitution_at(law: Law, damping: float, velocity: Array) -> Array:
+    """e of a Hertz contact with the viscoelastic damping η (1/(m s)) at `velocity` (m/s)."""
+    length = np.array([_length(law, V) for V in np.ravel(velocity).tolist()])
+    g = damping * np.sqrt(law.radius * length) * length / np.ravel(velocity)
+    return np.asarray(_viscoelastic_curve()(np.log(np.clip(g, _LEAST, _MOST))))
+
+
+def viscoelastic_damping(law: Law) -> float:
+    """The η (1/(m s)) closest to e of the resolved points of `law` in least squares."""
+    V, e = (law.column(name, resolved=True) for name in ("velocity", "restitution"))
+    if not V.size:
+        return 0.0
+    length = _length(law, float(V[-1]))
+    scale = float(V[-1] / (math.sqrt(law.radius * length) * length))  # g = 1 at the highest V
+
+    def miss(logarithm: float) -> float:
+        return float(
+            np.sum((viscoelastic_restitution_at(law, scale * math.exp(logarithm), V) - e) ** 2)
+        )
+
+    start = min(np.linspace(-9, 3, 49).tolist(), key=miss)
+    best = minimize_scalar(miss, bounds=(start - 0.3, start + 0.3), method="bounded")
+    return float(scale * math.exp(best.x))
+
+
+@cache
+def _viscoelastic_curve() -> CubicSpline:
+    """e against ln g."""
+    g = np.geomspace(_LEAST, _MOST, 48)
+    return CubicSpline(np.log(g), [hertz_restitution(x, 0.5) for x in g.tolist()])
 
 
 def _length(law: Law, velocity: float) -> float:

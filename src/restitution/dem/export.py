@@ -11,12 +11,13 @@ from types import ModuleType
 from restitution.dem.export_common import unset_pairs
 from restitution.dem.pair import pull_off_force
 from restitution.dem.pair_table import PairTable, pair_table
+from restitution.dem.units import NAMES, SI, units_of
 from restitution.errors import CaseError, OutputError
 from restitution.laws.law import Law
 from restitution.laws.law_files import law_rows
 from restitution.results.writer import replace_file, table_text, writing
 
-ADHESIVE = ("lammps-adhesive", "liggghts-adhesive")
+ADHESIVE = ("lammps-adhesive", "liggghts-adhesive", "yade-adhesive")
 """Variants with adhesive contact models; at least one pair must have adhesion."""
 CODES = (
     *("lammps", "liggghts", "yade", "mercurydpm", "edem", "kratos", "mujoco", "drake"),
@@ -25,6 +26,8 @@ CODES = (
 )
 WHOLE = ("c", "python", "csv")
 """The codes whose files contain e at every computed velocity."""
+IN_UNITS = ("lammps", "lammps-adhesive")
+"""The codes with a choice of units."""
 TABLE = "restitution.csv"
 # Columns that have the same value at every velocity of a law.
 _WHOLE = (
@@ -41,14 +44,23 @@ _WHOLE = (
 )
 
 
-def export(laws: Sequence[Law], code: str, velocity: float | None) -> dict[str, str]:
+def export(
+    laws: Sequence[Law],
+    code: str,
+    velocity: float | None,
+    *,
+    size: float = 1.0,
+    units: str = SI.name,
+) -> dict[str, str]:
     """The text of each input file of `code` (one of `CODES`) for the pairs of `laws`, by file name.
 
-    All codes except `WHOLE` take one e for each pair, which holds at `velocity` (m/s). Raises
-    `CaseError` if the velocity or a law is missing, or if the code does not accept a value;
-    `DomainError` for a velocity outside the computed ones.
+    All codes except `WHOLE` take one e for each pair, which holds at `velocity` (m/s). Particles
+    are coarse-grained, `size` times as large as the computed ones. `units` (of `units.NAMES`) are
+    those of the commands for `IN_UNITS`. Raises `CaseError` if the velocity or a law is missing, or
+    if the code does not accept a value; `DomainError` for a velocity outside the computed ones.
     """
-    table = pair_table(laws)
+    _check(code, size, units)
+    table = pair_table(laws, size)
     if code == "csv":
         return {TABLE: _table(table, velocity)}
     if velocity is None and code not in WHOLE:
@@ -58,8 +70,25 @@ def export(laws: Sequence[Law], code: str, velocity: float | None) -> dict[str, 
             f'velocity; give this velocity with --velocity, from "{law.lowest:.3g} m/s" to '
             f'"{law.highest:.3g} m/s"'
         )
-    texts: dict[str, str] = _module(code).write(table, velocity)
+    system = units_of(units)
+    given = () if system is SI else (system,)
+    texts: dict[str, str] = _module(code).write(table, velocity, *given)
     return texts
+
+
+def _check(code: str, size: float, units: str) -> None:
+    if not (math.isfinite(size) and size > 0):
+        raise CaseError(f"size: {size:g} is not a positive number, such as 10")
+    if size != 1 and code == "csv":
+        raise CaseError(
+            "size: the table is that of the computed particles, which coarse-grained ones share; "
+            "leave out --size"
+        )
+    if units != SI.name and units in NAMES and code not in IN_UNITS:
+        raise CaseError(
+            f"units: the files for {code} are in SI units, because only LAMMPS has others; leave "
+            f"out --units, or use --to {' or '.join(IN_UNITS)}"
+        )
 
 
 def limit(code: str) -> str:

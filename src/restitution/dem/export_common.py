@@ -13,13 +13,23 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache, cached_property, partial
 from importlib.metadata import PackageNotFoundError, version
+from operator import itemgetter
 
 import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from restitution.dem.notes import about, grouped_warnings
-from restitution.dem.pair import FRICTION, ExportedPair, contact_time
+from restitution.dem.own_laws import OwnLaws, closest
+from restitution.dem.own_laws import constant as constant_law
+from restitution.dem.pair import (
+    FRICTION,
+    ExportedPair,
+    adhesive_time,
+    contact_time,
+    pull_off_force,
+)
 from restitution.dem.pair_table import PairTable
+from restitution.dem.units import SI, Units
 from restitution.display import quantity
 from restitution.errors import CaseError, one_line
 from restitution.laws.law import Law
@@ -27,6 +37,12 @@ from restitution.laws.particle import Particle
 
 STEPS = 5000  # number of time steps in a contact
 
+# Measured in LAMMPS, LIGGGHTS, YADE and Kratos (evidence/codes/time_steps.csv).
+ACCURACY = (
+    "Then e of 0.5 and more is within 1 %; e of 0.2 needs 1/200. With 1/10, 0.5 becomes 0.476 to "
+    "0.519."
+)
+NOT_RUN = "Then e of 0.5 and more is within 1 % in LAMMPS; {} was not run."
 SCRIPT = "match_velocity.py"
 _ROUNDS = 6  # largest number of runs of the simulation
 _TOLERANCE = 0.005  # change of e below which the script stops
@@ -46,7 +62,11 @@ class Export:
     `lowest` is the smallest e that `code` reproduces. `ends` says when `code` ends a contact, and
     `constant` whether its e is the same at every velocity. `setting` tells how to set e of pairs of
     spheres if all laws are those of walls; empty if `code` does not need them. With `whole`, the
-    files contain e at every computed velocity; with `adhesive`, also the pull-off force.
+    files contain e at every computed velocity; with `adhesive`, also the pull-off force. `steps` is
+    the number of time steps in a contact with which `code` has the `accuracy`, in words; 0 if it
+    chooses its time steps itself. `own` are the laws e(V) that
+    `code` has. Numbers of the files that are
+    not comments are in `units`.
     """
 
     table: PairTable
@@ -58,6 +78,10 @@ class Export:
     setting: str = ""
     whole: bool = False
     adhesive: bool = False
+    steps: int = 50
+    accuracy: str = ACCURACY
+    units: Units = SI
+    own: OwnLaws = constant_law
 
     @cached_property
     def pairs(self) -> list[ExportedPair]:
@@ -90,24 +114,34 @@ class Export:
             self._title(),
             *([] if self.whole else [f"They hold at this velocity only: {reason} {_AGAIN}"]),
             f"End of a contact in {self.code}: {self.ends}",
-            "SI units.",
+            "This file is in SI units.",
+            *self._about_files(),
+            self._time_step(),
             "",
             *self._ending(),
             "",
             "Types:",
             *(f"  {k}: {particle}" for k, particle in enumerate(self.table.particles, 1)),
             *about(self.pairs, self.code, pulls=self.adhesive),
+            *(["", "e(V) of the law and of the files:", *self._closest()] if self._fits else []),
         ]
         return {self.notes_name: "\n".join(wrapped(lines)) + "\n"}
 
     def render(self, name: str, sign: str = "#", **values: object) -> str:
         """Fill `values` into `templates/NAME.j2`.
 
-        The template also has `table`, `pairs` and `velocity`, what `_environment` holds, and two
-        comments whose lines begin with `sign`: `head`, and `ending` with all warnings.
+        The template also has `table`, `pairs`, `velocity` and `units`, what `_environment` holds,
+        `u(value, unit)` for numbers in `units`, and two comments whose lines begin with `sign`:
+        `head`, and `ending` with the time step and all warnings.
         """
         template = _environment().get_template(f"{name}.j2")
-        shared = {"table": self.table, "pairs": self.pairs, "velocity": self.velocity}
+        shared = {
+            "table": self.table,
+            "pairs": self.pairs,
+            "velocity": self.velocity,
+            "units": self.units,
+            "u": lambda value, unit: number(self.units.of(value, unit)),
+        }
         return template.render(shared, head=self.head(sign), ending=self.ending(sign), **values)
 
     def matching_script(self, command: str, fragment: str, matched: str) -> str:
@@ -151,7 +185,11 @@ class Export:
 
     def head(self, sign: str) -> str:
         """The comment at the top of each exported file."""
-        lines = [self._title(), f"Types, errors, origin and conventions of e: {self.notes_name}"]
+        lines = [
+            self._title(),
+            *self._about_files(),
+            f"Types, errors, origin and conventions of e: {self.notes_name}",
+        ]
         if self._ending():
             lines.append("WARNINGS are at the end of this file.")
         return commented(wrapped(lines), sign)
@@ -161,13 +199,38 @@ class Export:
         return list(
             map(
                 comment_text,
-                [self._title(), f"Types, errors, origin: {self.notes_name}", *self._ending()],
+                [
+                    self._title(),
+                    *self._about_files(),
+                    f"Types, errors, origin: {self.notes_name}",
+                    self._time_step(),
+                    *self._ending(),
+                ],
             )
         )
 
     def ending(self, sign: str) -> str:
-        """The comment at the end of each exported file: all warnings, or nothing."""
-        return commented(wrapped(self._ending()), sign)
+        """The comment at the end of each exported file: its time step, and all warnings."""
+        return commented(wrapped([self._time_step(), *self._ending()]), sign)
+
+    @property
+    def _fits(self) -> bool:
+        return not (self.whole or self.adhesive)
+
+    def _closest(self) -> list[str]:
+        """How far e(V) of the files, and of the closest law of the code, is off for each pair."""
+        said = [(pair, closest(pair, self.code, self.own)) for pair in self.pairs]
+        return [f"  {pair.i} {pair.j}: {text}." for pair, text in said if text]
+
+    def closest_note(self, sign: str) -> str:
+        """How close the laws of the code come to e(V) of the worst pair, as comments."""
+        pairs = [pair for pair in self.pairs if closest(pair, self.code, self.own)]
+        if not pairs:
+            return ""
+        worst = max(pairs, key=lambda pair: self.own(pair)[0].misfit(pair))
+        others = f" (other pairs: {self.notes_name})" if len(pairs) > 1 else ""
+        text = f"Pair {worst.i} {worst.j}: {closest(worst, self.code, self.own)}{others}."
+        return commented(wrapped([text]), sign)
 
     def _title(self) -> str:
         at = "at the computed velocities" if self.whole else f"at {self.velocity:.6g} m/s"
@@ -175,6 +238,46 @@ class Export:
             f"Coefficients of restitution for {self.code} {at}, "
             f"written by restitution {program_version()}"
         )
+
+    def _about_files(self) -> list[str]:
+        """Units, and the size of coarse-grained particles."""
+        size, said = self.table.size, []
+        if self.units is not SI:
+            said.append(
+                f"The commands are in LAMMPS units {self.units.name} ({self.units.names}), the "
+                "comments in SI units."
+            )
+        if size != 1:
+            said.append(
+                f"Coarse-grained: particles are {size:g} times as large as those for which e was "
+                "computed, with the same density. e(V) is that of the real size. Forces are "
+                f"{size**2:.4g} times the real ones, masses {size**3:.4g} times."
+            )
+        return said
+
+    def _time_step(self) -> str:
+        time, pair, when = min(map(self._shortest, self.pairs), key=itemgetter(0))
+        shortest = f"the shortest contact ({time:.3g} s, pair {pair.i} {pair.j} {when})"
+        if self.steps:
+            step = time / self.steps
+            own = (
+                f" ({self.units.of(step, 's'):.3g} in these units)" if self.units.time != 1 else ""
+            )
+            limit = f"at most {step:.3g} s{own}, 1/{self.steps} of {shortest}"
+        else:
+            limit = f"chosen by the code for {shortest}"
+        return f"Time step: {limit}. {self.accuracy}"
+
+    def _shortest(self, pair: ExportedPair) -> tuple[float, ExportedPair, str]:
+        """The shortest duration (s) that counts for the time step, and when it occurs."""
+        law = pair.law
+        time = float(contact_time(law) * law.highest**-0.2)
+        when = f"at {law.highest:.4g} m/s, the highest velocity of its law"
+        if self.adhesive and not self.whole and law.work_of_adhesion > 0:
+            adhesive = adhesive_time(law, pull_off_force(law, self.velocity))
+            if adhesive < time:
+                return adhesive, pair, "when its attraction takes hold"
+        return time, pair, when
 
     def _ending(self) -> list[str]:
         return [*self.unset(), *grouped_warnings(self.pairs, holds=self.adhesive)]

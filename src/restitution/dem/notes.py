@@ -103,8 +103,7 @@ def _about(pair: ExportedPair, code: str, *, pulls: bool) -> list[str]:
         f"  source of the yield pressure: {source}",
         f"  end of contact assumed for e: {law.conventions.end_of_contact}",
         f"  the error of e includes: {law.conventions.restitution_error}",
-        f"  elastic contact time: {pair.contact_time:.3g} s; a time step of 1/50 "
-        "of this time changes e by at most 1 % in LAMMPS",
+        f"  elastic contact time at {velocity:.6g} m/s: {pair.contact_time:.3g} s",
         f"  computed from {law.lowest:.4g} to {law.highest:.4g} m/s; nothing is extrapolated",
         *_adhesion(law, velocity, code, pulls=pulls),
     ]

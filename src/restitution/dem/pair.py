@@ -86,6 +86,13 @@ def contact_time(law: Law, radius: float | None = None) -> float:
     return float(Hertz(R, law.contact_modulus).duration(1.0, law.mass))
 
 
+def adhesive_time(law: Law, force: float) -> float:
+    """Half a period (s) on the stiffness at the indentation at which Hertz's force is `force`."""
+    depth = float(Hertz(law.radius, law.contact_modulus).indentation(force))
+    stiffness = 2 * law.contact_modulus * math.sqrt(law.radius * depth)
+    return math.pi * math.sqrt(law.mass / stiffness)
+
+
 def pull_off_force(law: Law, velocity: float) -> float:
     """Pull-off force (N) after an impact at `velocity` (m/s), linear in ln V; NaN if unknown."""
     V, forces = law.column("velocity"), law.column("pull_off_force")

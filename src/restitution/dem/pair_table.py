@@ -8,6 +8,7 @@ from itertools import combinations_with_replacement, product
 
 import numpy as np
 
+from restitution.dem.units import coarse_grained
 from restitution.display import quantity
 from restitution.errors import CaseError
 from restitution.laws.law import Law
@@ -22,12 +23,14 @@ _EQUAL = 1e-5
 class PairTable:
     """Types of spheres and walls, and the law of every given pair.
 
-    Types are numbered from 1, spheres first. The keys of `laws` are (i, j) with i ≤ j.
+    Types are numbered from 1, spheres first. The keys of `laws` are (i, j) with i ≤ j. Bodies and
+    laws are those of particles `size` times as large as the computed ones.
     """
 
     spheres: tuple[Particle, ...]
     walls: tuple[Particle, ...]
     laws: dict[tuple[int, int], Law]
+    size: float = 1.0
 
     @property
     def particles(self) -> tuple[Particle, ...]:
@@ -87,12 +90,15 @@ class PairTable:
         )
 
 
-def pair_table(laws: Sequence[Law]) -> PairTable:
+def pair_table(laws: Sequence[Law], size: float = 1.0) -> PairTable:
     """Make the table of pairs from `laws`. Bodies with equal values become one type.
 
-    A value that only one of two bodies has does not make them different. Raises `CaseError` if a
-    body may be either of two types, or if two laws of one pair differ.
+    A value that only one of two bodies has does not make them different. `size` is that of
+    coarse-grained particles. Raises `CaseError` if a body may be either of two types, or if two
+    laws of one pair differ.
     """
+    if size != 1:
+        laws = [coarse_grained(law, size) for law in laws]
     distinct = list(dict.fromkeys(body for law in laws for body in (law.first, law.second)))
     types, kind = _types(distinct)
     # Types in the order of their first appearance, walls last.
@@ -112,6 +118,7 @@ def pair_table(laws: Sequence[Law]) -> PairTable:
         tuple(body for body in ordered if not body.wall),
         tuple(body for body in ordered if body.wall),
         table,
+        size,
     )
 
 

@@ -22,9 +22,7 @@ CODE = "C"
 HEADER, DRIVER = "restitution_contact.h", "collide.c"
 ENDS = "the force is back to zero; with adhesion, after pull-off."
 NOTES = (
-    "Time step: e is within 0.5 % of the law with 20 or more steps in the elastic contact time "
-    "t_c = 2.87 (m*^2/(R* E*^2 V))^(1/5), if leapfrog, velocity Verlet or symplectic Euler moves "
-    "the bodies.",
+    "Leapfrog, velocity Verlet or symplectic Euler must move the bodies.",
     "Below the computed velocities a dry pair has the e of the lowest one, and a pair with "
     "adhesion loses the energy that it loses there; above them e is that of the highest one. "
     "`outside` of the contact is then -1 or 1.",
@@ -51,7 +49,17 @@ def portable(table: PairTable, velocity: float | None, code: str) -> Export:
         laws = table.laws.values()
         low, high = max(law.lowest for law in laws), min(law.highest for law in laws)
         velocity = math.sqrt(low * high)
-    return Export(table, velocity, code, 0.0, ENDS, whole=True, adhesive=True)
+    return Export(
+        table,
+        velocity,
+        code,
+        0.0,
+        ENDS,
+        whole=True,
+        adhesive=True,
+        steps=20,
+        accuracy="Then e is within 0.5 %.",
+    )
 
 
 def contents(export: Export, sign: str) -> dict[str, Any]:

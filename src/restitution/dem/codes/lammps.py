@@ -31,12 +31,15 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import dataclass, replace
+from functools import partial
 
 from restitution.dem.codes.lammps_mdr import mdr_offers
 from restitution.dem.damping import hertz_damping, hertz_restitution_at
 from restitution.dem.export_common import SCRIPT, STEPS, Export, number
+from restitution.dem.own_laws import OwnLaw, constant, fitted, viscoelastic
 from restitution.dem.pair import STIFFNESS_SHARE, ExportedPair
 from restitution.dem.pair_table import PairTable
+from restitution.dem.units import SI, Units
 
 CODE = "LAMMPS"
 LOWEST = 0.001  # smallest e that is reproduced within 0.5 %, with `STEPS` time steps in a contact
@@ -47,7 +50,7 @@ _GRAINS = 500  # number of spheres of the packing
 # its initial velocity. The lowest quarter of the spheres has then reached the wall.
 _FALLS = 0.25
 _FILLED = 0.12  # fraction of the initial volume that the spheres fill
-KOKKOS = "restitution_kokkos.lmp"
+KOKKOS, VISCOELASTIC = "restitution_kokkos.lmp", "restitution_viscoelastic.lmp"
 _ENDS = (
     "the overlap is back to zero. The force is tensile shortly before, due to damping; do not add "
     "limit_damping, which cuts off the tension and raises e (from 0.8 to 0.808)."
@@ -64,14 +67,14 @@ _KOKKOS_ENDS = (
 )
 
 
-def write(table: PairTable, velocity: float) -> dict[str, str]:
+def write(table: PairTable, velocity: float, units: Units = SI) -> dict[str, str]:
     """The input files for LAMMPS; names and texts. Raises `CaseError`, `DomainError`.
 
     There is no packing if `table` has no law between spheres, or if no wall has laws with all
     types.
     """
     table.require_spheres(CODE)
-    export = Export(table, velocity, CODE, LOWEST, _ENDS)
+    export = Export(table, velocity, CODE, LOWEST, _ENDS, units=units, own=own_laws)
     pairs = export.pairs
     spheres = [pair for pair in pairs if not pair.wall]
     kokkos = replace(export, ends=_KOKKOS_ENDS, constant=False)
@@ -79,10 +82,11 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
         FRAGMENT: export.render(
             FRAGMENT,
             friction_note=export.friction_note("#", TANGENTIAL),
-            tangential=tangential,
+            tangential=partial(tangential, units=units),
             spheres=spheres,
             walls=[pair for pair in pairs if pair.wall],
             mdr=mdr_offers(pairs),
+            closest=export.closest_note("#"),
         ),
         KOKKOS: kokkos.render(
             KOKKOS,
@@ -91,12 +95,27 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
             damping=[_velocity_damping(pair) for pair in pairs],
             spring=_linear_spring(spheres[0]) if len(spheres) == 1 else None,
         ),
+        VISCOELASTIC: replace(export, ends=_KOKKOS_ENDS).render(
+            VISCOELASTIC,
+            friction_note=export.friction_note("#"),
+            spheres=spheres,
+            fits=[(pair, viscoelastic(pair)) for pair in pairs],
+        ),
         SCRIPT: export.matching_script("lmp -in my.in", FRAGMENT, "matched.lmp"),
         COLLISION: export.render(
             COLLISION, size=table.largest_radius, steps=STEPS, fragment=FRAGMENT, far=0, turns=1000
         ),
     }
     return files | packing(export, FRAGMENT) | export.notes()
+
+
+def own_laws(pair: ExportedPair) -> list[OwnLaw]:
+    """The laws e(V) that LAMMPS has for `pair`."""
+    return [
+        *constant(pair),
+        viscoelastic(pair).law,
+        *fitted(pair, "lammps-mdr", "mdr"),
+    ]
 
 
 def packing(export: Export, fragment: str) -> dict[str, str]:
@@ -123,12 +142,12 @@ def packing(export: Export, fragment: str) -> dict[str, str]:
     return {PACKING: text}
 
 
-def tangential(pair: ExportedPair) -> str:
-    """LAMMPS' tangential model of `pair` with its parameters."""
+def tangential(pair: ExportedPair, units: Units) -> str:
+    """LAMMPS' tangential model of `pair` with its parameters, in `units`."""
     if pair.law.friction is None:
         return f"mindlin NULL 1.0 {pair.friction}"
     stiffness = STIFFNESS_SHARE * pair.mindlin_stiffness
-    return f"mindlin_rescale/force {number(stiffness)} 1.0 {number(pair.friction)}"
+    return f"mindlin_rescale/force {number(units.of(stiffness, 'Pa'))} 1.0 {number(pair.friction)}"
 
 
 def _counts(table: PairTable) -> list[int]:

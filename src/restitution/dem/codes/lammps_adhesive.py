@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 
 from restitution.dem.codes.lammps import COLLISION, TANGENTIAL, packing, tangential
 from restitution.dem.damped_adhesion import (
@@ -27,10 +28,13 @@ from restitution.dem.damped_adhesion import (
 from restitution.dem.export_common import Export, commented, wrapped
 from restitution.dem.pair import ExportedPair
 from restitution.dem.pair_table import PairTable
+from restitution.dem.units import SI, Units
 
 CODE = "LAMMPS"
 FRAGMENT = "restitution_adhesive.lmp"
 _STEPS = 2000  # number of time steps in the elastic contact time of the test collision
+# Measured with lactose of 2 um from 1.2 times its sticking velocity on.
+_ACCURACY = "Then e is within 0.01 of that with smaller steps; with 1/50, within 0.04."
 _TURNS = 40  # elastic contact times after which bodies that have not parted stick
 _ENDS = "the tension reaches the pull-off force; without adhesion, the overlap is back to zero."
 
@@ -56,11 +60,22 @@ class DampedModel:
         return f"Pair {self.pair.i} {self.pair.j}: {misfit(self.fit, self.pair.law)}."
 
 
-def write(table: PairTable, velocity: float) -> dict[str, str]:
+def write(table: PairTable, velocity: float, units: Units = SI) -> dict[str, str]:
     """The input files; names and texts. Raises `CaseError` and `DomainError`."""
     table.require_spheres(CODE)
     require_adhesion(table.laws.values(), "lammps")
-    export = Export(table, velocity, CODE, 0.0, _ENDS, constant=False, adhesive=True)
+    export = Export(
+        table,
+        velocity,
+        CODE,
+        0.0,
+        _ENDS,
+        constant=False,
+        adhesive=True,
+        units=units,
+        steps=200,
+        accuracy=_ACCURACY,
+    )
     models = {(p.i, p.j): _model(p) for p in export.pairs if p.law.work_of_adhesion > 0}
     size = table.largest_radius
     far = max(3 * (m.fit.pull_off_force / m.pair.law.contact_modulus) ** (2 / 3)
@@ -69,7 +84,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
         FRAGMENT: export.render(
             FRAGMENT,
             models=models,
-            tangential=tangential,
+            tangential=partial(tangential, units=units),
             misfits=commented(wrapped([m.said for m in models.values()]), "#"),
             friction_note=export.friction_note("#", TANGENTIAL),
         ),

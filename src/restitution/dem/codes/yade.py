@@ -20,9 +20,12 @@ follows the law e(V).
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import partial
+from typing import Any
 
-from restitution.dem.export_common import Export, density_of, law_points
+from restitution.dem.export_common import Export, commented, density_of, law_points, wrapped
+from restitution.dem.own_laws import OwnLaw, constant
 from restitution.dem.pair import FRICTION, STIFFNESS_SHARE, ExportedPair, contact_time
 from restitution.dem.pair_table import PairTable
 from restitution.laws.particle import Particle
@@ -44,6 +47,7 @@ SETTING = (
     f"these pairs is {FRICTION}, a placeholder."
 )
 _STEPS = 2000  # number of time steps in the contact of the test collision
+_ADHESIVE_STEPS = 500  # the same with adhesion, where spheres that stick oscillate for long
 # Density (kg/m³) of a wall whose case gives none. YADE needs a value, which has no effect.
 _WALL_DENSITY = 1000.0
 
@@ -53,10 +57,23 @@ _FIT = (-1.23589, 0.202669, 0.0108748, 0.000410051, -3.09169e-5, -1.19887e-6)
 def write(table: PairTable, velocity: float) -> dict[str, str]:
     """Notes, a module to import and a test collision; names and texts."""
     table.require_all(CODE)
-    export = Export(table, velocity, CODE, LOWEST, _ENDS, setting=SETTING)
+    export = Export(table, velocity, CODE, LOWEST, _ENDS, setting=SETTING, own=own_laws)
+    return inputs(export, {"attractions": {}, "misfits": []}) | export.notes()
+
+
+def own_laws(pair: ExportedPair) -> list[OwnLaw]:
+    """The laws e(V) that YADE has for `pair`."""
+    return [*constant(pair), OwnLaw("e(V) by `follow`", pair.law.column("restitution"))]
+
+
+def inputs(export: Export, values: Mapping[str, Any]) -> dict[str, str]:
+    """The module and the collision; `values` has the adhesive pairs of both, and their misfits."""
+    table = export.table
+    misfits = commented(wrapped(values["misfits"]), "#")
     return {
         FRAGMENT: export.render(
             FRAGMENT,
+            **{**values, "misfits": misfits},
             unset=table.missing_spheres(),
             placeholder=FRICTION,
             fit=_FIT,
@@ -69,10 +86,11 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
         ),
         COLLISION: export.render(
             COLLISION,
-            steps=_STEPS,
+            attractions=values["attractions"],
+            steps=_ADHESIVE_STEPS if values["attractions"] else _STEPS,
             pair_time=_contact_time,
         ),
-    } | export.notes()
+    }
 
 
 def _tangential(pair: ExportedPair) -> float:
