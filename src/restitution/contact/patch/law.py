@@ -105,7 +105,7 @@ class PatchRepulsion(NoAttraction):
         free = solve_with_patches(contact, self.table, indentation, math.inf, residual)
         depth = indentation - free.patch_approach
         limit, convolutions = model.bound(_without_patches(contact), depth, residual)
-        return limit, convolutions + free.convolutions
+        return freeze(self.table.bulk_bound(np.asarray(limit))), convolutions + free.convolutions
 
     def with_work(self, state: State, start: State | None) -> State:
         if isinstance(start, PatchState):
