@@ -3,6 +3,7 @@
 import json
 import math
 import re
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -15,7 +16,7 @@ from restitution.curve.work_curve import WorkCurve
 from restitution.errors import NotConvergedError
 from restitution.results.writer import ResultsFolder
 from restitution.runs import depths as depths_module
-from restitution.runs.companions import Companions, curve_of
+from restitution.runs.companions import Companions, ScaleCurves, curve_of
 from restitution.runs.convergence import run_convergence
 from restitution.runs.ensemble import run_realisations
 from restitution.runs.error_budget import (
@@ -304,6 +305,7 @@ file = "{file}"
 detrend = "tilt"
 extend = "twin"
 seed = 1
+below_grid = "omit"
 [grid]
 nodes = [96, 96]
 spacing = "0.25 um"
@@ -358,3 +360,16 @@ def test_another_body_may_be_the_softer_one_at_an_end_of_the_spread(tmp_path):
     rows, _ = run(text, tmp_path / "out")
     assert rows[0]["material_error"] > 0
     assert rows[0]["total_error"] >= rows[0]["material_error"] - 1e-12
+
+
+def test_waves_that_are_not_short_beside_the_contact_have_an_error():
+    def curve(e):
+        return WorkCurve(np.array([1.0, 10.0]), e**2 * np.array([1.0, 10.0]), np.zeros(2))
+
+    own, without = curve(0.8), curve(0.9)
+    scales = ScaleCurves(own, (), None, without, edge=1.0, wavelength=2e-6)
+    work, area = np.array([2.0, 5.0]), math.pi * np.array([1e-6, 4e-6]) ** 2
+    errors = scales.separation_error(work, area)
+    assert errors[0] == approx(4 * errors[1])
+    assert errors[1] == approx(0.25 * 0.5 * 0.1, rel=1e-3)
+    assert not replace(scales, without=None).separation_error(work, area).any()

@@ -124,8 +124,7 @@ def law_error(change: Array, by_law: Array, work: Array) -> Array:
     No wave is left out, and the law is smooth, so few nodes are enough (docs/two-scales.md).
     `by_law` is the error of the law; for the others see `grid_error`.
     """
-    near, law = _smoothed(change**2, work, _NEAR_GRID), _smoothed(by_law**2, work, _NEAR_SURFACE)
-    return np.asarray(np.sqrt(near + law))
+    return np.asarray(np.sqrt(_smoothed(change**2, work, _NEAR_SURFACE) + by_law**2))
 
 
 def widened_error(
@@ -233,6 +232,7 @@ class ErrorBudget:
         if scales := companions.scales(self._progress):
             area = array(points, "contact_nodes") * companions.cell_area
             by_law = scales.error(lambda curve: curve.at(work), area)
+            by_law = np.hypot(by_law, scales.separation_error(work, array(points, "contact_area")))
             errors, band = law_error(change, by_law, work), np.zeros(work.size)
         else:
             unseen = unseen_yield(companions, waves, points)
