@@ -182,19 +182,19 @@ def test_adhesive_bodies_have_a_law_of_finite_range(tmp_path):
     )
 
 
-def scan_of(folder, more="", velocity="0.02 m/s", seed=0):
+def scan_of(folder, more="", velocity="0.02 m/s", seed=0, **values):
     """A case with white noise of Rq 2 nm as a scan."""
     rng = np.random.default_rng(seed)
     np.save(folder / "scan.npy", 2e-9 * rng.standard_normal((160, 160)))
-    text = CASE.format(**{**USUAL, "velocity": velocity})
+    text = CASE.format(**{**USUAL, "velocity": velocity, **values})
     a, b = text.index("[roughness]"), text.index("[grid]")
     scan = '[roughness]\nkind = "measured"\nfile = "scan.npy"\nsize = "24 um"\n'
     return parse_case(f"{text[:a]}{scan}{more}\n{text[b:]}")
 
 
 def test_a_scan_on_coarse_cells(tmp_path):
-    assert scan_of(tmp_path).contact(tmp_path).adhesion is None
-    given = scan_of(tmp_path, 'below_grid = "patch"')
+    assert scan_of(tmp_path, 'below_grid = "omit"').contact(tmp_path).adhesion is None
+    given = scan_of(tmp_path)
     contact = given.contact(tmp_path)
     assert isinstance(contact.adhesion, PatchRepulsion)
     patch = contact.adhesion.patches[0]
@@ -203,6 +203,29 @@ def test_a_scan_on_coarse_cells(tmp_path):
     finer = given.refined(4).contact(tmp_path)
     assert finer.adhesion is None
     assert finer.surface.height.std() > 1.5 * contact.surface.height.std()
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"velocity": "1 mm/s"},
+        {"spacing": "0.2 um"},
+        {"interface": 'work_of_adhesion = "0.05 J/m^2"'},
+        {"interface": "", "more": 'extend = "mirror"\nsplit = "13 um"', "velocity": "10 m/s"},
+    ],
+)
+def test_waves_of_a_scan_stay_out_where_they_do_not_matter(tmp_path, values):
+    """A light contact, half an octave, adhesion; a split given all the same."""
+    given = scan_of(tmp_path, **values)
+    assert (given.splitting(tmp_path) is None) == ("more" not in values)
+
+
+def test_waves_of_a_scan_between_elastic_bodies_stay_out(tmp_path):
+    elastic = scan_of(tmp_path).model_copy()
+    text = elastic.interface.model_copy(update={"yield_pressure": float("inf")})
+    elastic = elastic.model_copy(update={"interface": text})
+    assert elastic.splitting(tmp_path) is None
+    assert scan_of(tmp_path).splitting(tmp_path) is not None
 
 
 def test_a_split_of_a_scan_asks_for_patches(tmp_path):

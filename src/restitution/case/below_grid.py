@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -30,6 +31,9 @@ TILES = 2  # patches along each edge of the window from which they are cut
 _MOST_NODES = 2048  # along the edge of a patch
 _BYTES = 250.0  # per node of a window
 _MOST_REFINED = 512  # nodes along the edge of a patch that is refined for its adhesion
+# By default the waves of a scan go into patches if bodies yield without adhesion, if half an octave
+# is below the split, and if the contact radius is at least so many splits at the largest depth.
+_MATTERING, _SEPARATE = 0.71, 2.0
 _REACH = 0.5  # cell divided by sqrt(r z₀) for asperities of radius r (docs/adhesion.md)
 
 
@@ -59,6 +63,12 @@ def splitting_of(case: CaseTables, folder: Path) -> Splitting | None:
         return None
     deepest = case.indentation_at(case.depths()[-1])
     radius = predicted_radius(case.pair(), deepest, case.yielding().hardness)
+    if wanted.by_default:
+        if _SEPARATE * wanted.split > radius:
+            return None
+        with suppress(CaseError):  # too large, or the scan too small
+            return _sized(case, folder, wanted)
+        return None
     if wanted.split > radius:
         raise CaseError(_not_separate(case, wanted, radius))
     return _sized(case, folder, wanted)
@@ -75,6 +85,7 @@ class _Wanted(NamedTuple):
     split: float  # wavelength (m)
     least: float  # the shortest wave (m) of the grid
     cell: float  # of the patches (m)
+    by_default: bool  # so that the waves may be left out
 
 
 def _wanted(case: CaseTables, folder: Path) -> _Wanted | None:
@@ -91,14 +102,16 @@ def _wanted(case: CaseTables, folder: Path) -> _Wanted | None:
             "kurtosis; leave below_grid and split out"
         )
     added = _adds_waves(case, grid)
-    if choice is None and not added:
+    by_default = choice is None and not added
+    if by_default and (case.interface.adhesive_energy or math.isinf(case.yielding().hardness)):
         return None
     # A finer grid carries more waves of a scan, but no more waves of a generated surface.
     fine = divided(grid, case.grid.factor)
     least = 2 * max(grid.spacing if added else fine.spacing)
     split = _given(case) or max(_cells(case) * max(fine.spacing), least)
     cell = min(part.patch_cell(grid, folder) for part in parts)
-    if min(part.shortest_wave(grid, folder) for part in parts) > split * (1 - 1e-9):
+    longest = split * (_MATTERING if by_default else 1 - 1e-9)
+    if min(part.shortest_wave(grid, folder) for part in parts) > longest:
         return None
     if split < least * (1 - 1e-9):
         raise CaseError(
@@ -106,7 +119,7 @@ def _wanted(case: CaseTables, folder: Path) -> _Wanted | None:
             "between would be in neither the grid nor the patches; use a larger split or a smaller "
             "grid.spacing"
         )
-    return _Wanted(split, least, cell)
+    return _Wanted(split, least, cell, by_default)
 
 
 def _adds_waves(case: CaseTables, grid: Grid) -> bool:
