@@ -5,10 +5,12 @@ import re
 import numpy as np
 import pytest
 
+from restitution.case import below_grid
 from restitution.case.below_grid import notice_of
 from restitution.case.case_file import parse_case
 from restitution.contact.patch.law import PatchAttraction, PatchRepulsion
 from restitution.errors import CaseError, SurfaceError
+from restitution.numerics import memory
 from restitution.surfaces.split import SplitSurface
 from tolerance import approx
 
@@ -95,6 +97,12 @@ def test_a_split_of_its_own(tmp_path):
 def test_impossible_splits_name_the_key(tmp_path, values, named):
     with pytest.raises(CaseError, match=rf"^roughness.split: .*{named}"):
         case(**values).contact(tmp_path)
+
+
+def test_patches_larger_than_memory_are_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(memory, "available", lambda: 1e6)
+    with pytest.raises(CaseError, match=r"^roughness.split: patches of 96 x 96 .* too large; use"):
+        case().splitting(tmp_path)
 
 
 @pytest.mark.parametrize(
@@ -218,6 +226,13 @@ def test_waves_of_a_scan_stay_out_where_they_do_not_matter(tmp_path, values):
     """A light contact, half an octave, adhesion; a split given all the same."""
     given = scan_of(tmp_path, **values)
     assert (given.splitting(tmp_path) is None) == ("more" not in values)
+
+
+def test_patches_of_a_scan_that_take_long_are_not_the_default(tmp_path, monkeypatch):
+    assert scan_of(tmp_path).splitting(tmp_path) is not None
+    monkeypatch.setattr(below_grid, "_MOST_BY_DEFAULT", 20)
+    assert scan_of(tmp_path).splitting(tmp_path) is None
+    assert scan_of(tmp_path, 'below_grid = "patch"').splitting(tmp_path) is not None
 
 
 def test_waves_of_a_scan_between_elastic_bodies_stay_out(tmp_path):

@@ -16,7 +16,7 @@ from restitution.case.roughness_keys import ADHESIVE_CELLS, CELLS, BelowGrid, St
 from restitution.case.tables import CaseTables
 from restitution.contact.checks.resolution import predicted_radius
 from restitution.display import quantity
-from restitution.errors import CaseError
+from restitution.errors import CaseError, RestitutionError
 from restitution.numerics import memory
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface, refine, rms_slope
@@ -34,6 +34,7 @@ _MOST_REFINED = 512  # nodes along the edge of a patch that is refined for its a
 # By default the waves of a scan go into patches if bodies yield without adhesion, if half an octave
 # is below the split, and if the contact radius is at least so many splits at the largest depth.
 _MATTERING, _SEPARATE = 0.71, 2.0
+_MOST_BY_DEFAULT = 512  # nodes along the edge of such a patch, for some 10 s of solves
 _REACH = 0.5  # cell divided by sqrt(r z₀) for asperities of radius r (docs/adhesion.md)
 
 
@@ -58,20 +59,38 @@ def splitting_of(case: CaseTables, folder: Path) -> Splitting | None:
 
     Raises `CaseError` if a split is needed or given, but impossible.
     """
+    grid = case.grid.grid()
+    if grid is None or not case.roughness:
+        return None
+    if _choice(case) is None and not _adds_waves(case, grid):
+        with suppress(RestitutionError):  # whoever makes the contact says what is wrong
+            return _where_waves_matter(case, folder)
+        return None
     wanted = _wanted(case, folder)
     if wanted is None:
         return None
-    deepest = case.indentation_at(case.depths()[-1])
-    radius = predicted_radius(case.pair(), deepest, case.yielding().hardness)
-    if wanted.by_default:
-        if _SEPARATE * wanted.split > radius:
-            return None
-        with suppress(CaseError):  # too large, or the scan too small
-            return _sized(case, folder, wanted)
-        return None
+    radius = _radius(case)
     if wanted.split > radius:
         raise CaseError(_not_separate(case, wanted, radius))
     return _sized(case, folder, wanted)
+
+
+def _where_waves_matter(case: CaseTables, folder: Path) -> Splitting | None:
+    if case.interface.adhesive_energy or math.isinf(case.yielding().hardness):
+        return None
+    wanted = _wanted(case, folder)
+    if wanted is None or wanted.shortest > _MATTERING * wanted.split:
+        return None
+    if _SEPARATE * wanted.split > _radius(case):
+        return None
+    sized = _sized(case, folder, wanted)
+    return sized if sized.nodes <= _MOST_BY_DEFAULT else None
+
+
+def _radius(case: CaseTables) -> float:
+    """Contact radius (m) of smooth bodies at the largest depth."""
+    deepest = case.indentation_at(case.depths()[-1])
+    return predicted_radius(case.pair(), deepest, case.yielding().hardness)
 
 
 def notice_of(case: CaseTables, folder: Path) -> str | None:
@@ -84,8 +103,8 @@ def notice_of(case: CaseTables, folder: Path) -> str | None:
 class _Wanted(NamedTuple):
     split: float  # wavelength (m)
     least: float  # the shortest wave (m) of the grid
+    shortest: float  # the shortest wave (m) of the patches
     cell: float  # of the patches (m)
-    by_default: bool  # so that the waves may be left out
 
 
 def _wanted(case: CaseTables, folder: Path) -> _Wanted | None:
@@ -102,16 +121,13 @@ def _wanted(case: CaseTables, folder: Path) -> _Wanted | None:
             "kurtosis; leave below_grid and split out"
         )
     added = _adds_waves(case, grid)
-    by_default = choice is None and not added
-    if by_default and (case.interface.adhesive_energy or math.isinf(case.yielding().hardness)):
-        return None
     # A finer grid carries more waves of a scan, but no more waves of a generated surface.
     fine = divided(grid, case.grid.factor)
     least = 2 * max(grid.spacing if added else fine.spacing)
     split = _given(case) or max(_cells(case) * max(fine.spacing), least)
     cell = min(part.patch_cell(grid, folder) for part in parts)
-    longest = split * (_MATTERING if by_default else 1 - 1e-9)
-    if min(part.shortest_wave(grid, folder) for part in parts) > longest:
+    shortest = min(part.shortest_wave(grid, folder) for part in parts)
+    if shortest > split * (1 - 1e-9):
         return None
     if split < least * (1 - 1e-9):
         raise CaseError(
@@ -119,7 +135,7 @@ def _wanted(case: CaseTables, folder: Path) -> _Wanted | None:
             "between would be in neither the grid nor the patches; use a larger split or a smaller "
             "grid.spacing"
         )
-    return _Wanted(split, least, cell, by_default)
+    return _Wanted(split, least, shortest, cell)
 
 
 def _adds_waves(case: CaseTables, grid: Grid) -> bool:

@@ -235,7 +235,7 @@ class MeasuredRoughness(Table):
 
     def stamp(self, folder: Path) -> Stamp:
         """Time and size of the file; None if it is missing, which whoever reads it says."""
-        with suppress(OSError):
+        with suppress(OSError, ValueError):  # a name may contain a null character
             stat = (folder / self.file).stat()
             return stat.st_mtime_ns, stat.st_size
         return None

@@ -52,6 +52,9 @@ _OF_SHORTER = 0.5
 # Error of the change of COR by the patches, as a fraction of this change, where the radius of the
 # real contact area is the wavelength of the split; and the largest ratio of wavelength to radius.
 _OF_CHANGE, _LARGEST_RATIO = 0.25, 10.0
+# The same fraction at any radius if the bound grows: where few asperities of the long waves carry
+# the contact, their bulk yields too early.
+_OF_GROWING_CHANGE = 0.5
 
 
 def curve_of(
@@ -147,12 +150,17 @@ class ScaleCurves:
         return np.asarray(np.hypot(scatter, growth))
 
     def separation_error(self, work: Array, area: Array) -> Array:
-        """Error of COR at `work` (J) because waves are not short beside the real `area` (m²)."""
+        """Error of COR at `work` (J) as a fraction of its change by the patches.
+
+        Waves are not short beside the real `area` (m²), and a bound that grows is approximate.
+        """
         if self.without is None:
             return np.zeros(work.size)
         ratio = self.wavelength / np.sqrt(np.maximum(area, 1e-300) / math.pi)
-        change = np.abs(self.own.at(work) - self.without.at(work))
-        return np.asarray(_OF_CHANGE * np.minimum(ratio, _LARGEST_RATIO) * change)
+        fraction = _OF_CHANGE * np.minimum(ratio, _LARGEST_RATIO)
+        if self.weaker is not None:
+            fraction = np.hypot(fraction, _OF_GROWING_CHANGE)
+        return np.asarray(fraction * np.abs(self.own.at(work) - self.without.at(work)))
 
 
 @dataclass(frozen=True)

@@ -62,7 +62,7 @@ class PatchBounds:
     def elastic(self, depth: float) -> float:
         """Nominal pressure (Pa) of the elastic patch at a `depth` (m)."""
         beyond = max(depth / float(self.depth[-1]), 1.0) ** _BEYOND
-        return float(np.interp(depth, self.depth, self._roots)) ** 3 * beyond
+        return float(np.interp(depth, self.depth, self._roots) ** 3 * beyond)
 
     def at(self, depth: float, nominal: float) -> Array:
         """Bound (Pa) of each node at a `depth` (m).
@@ -84,7 +84,7 @@ class PatchBounds:
 
     def _depth_at(self, nominal: float) -> float:
         beyond = max(nominal / float(self.nominal[-1]), 1.0) ** (1 / _BEYOND)
-        return float(np.interp(np.cbrt(nominal), self._roots, self.depth)) * beyond
+        return float(np.interp(np.cbrt(nominal), self._roots, self.depth) * beyond)
 
     @cached_property
     def _roots(self) -> Array:
