@@ -228,6 +228,20 @@ def test_waves_of_a_scan_stay_out_where_they_do_not_matter(tmp_path, values):
     assert (given.splitting(tmp_path) is None) == ("more" not in values)
 
 
+@pytest.mark.parametrize(("velocity", "matter"), [("0.5 m/s", True), ("0.02 m/s", False)])
+def test_contacts_on_few_asperities_under_a_growing_bound_keep_waves_out(
+    tmp_path, velocity, matter
+):
+    """Indentations are compared with the rms height, here 60 nm."""
+    given = scan_of(tmp_path, velocity=velocity)
+    np.save(tmp_path / "scan.npy", 30 * np.load(tmp_path / "scan.npy"))
+    update = {"yield_pressure": None, "yield_strength": 1e9}
+    growing = given.model_copy(update={"interface": given.interface.model_copy(update=update)})
+    assert growing.yielding().model.grows
+    assert given.splitting(tmp_path) is not None
+    assert (growing.splitting(tmp_path) is not None) == matter
+
+
 def test_patches_of_a_scan_that_take_long_are_not_the_default(tmp_path, monkeypatch):
     assert scan_of(tmp_path).splitting(tmp_path) is not None
     monkeypatch.setattr(below_grid, "_MOST_BY_DEFAULT", 20)

@@ -32,7 +32,9 @@ _MOST_NODES = 2048  # along the edge of a patch
 _BYTES = 250.0  # per node of a window
 _MOST_REFINED = 512  # nodes along the edge of a patch that is refined for its adhesion
 # By default the waves of a scan go into patches if bodies yield without adhesion, if half an octave
-# is below the split, and if the contact radius is at least so many splits at the largest depth.
+# is below the split, and if the contact radius is at least so many splits at the largest depth. If
+# the bound grows, all indentations must be at least the rms height: the error of contacts on fewer
+# asperities holds too rarely (evidence/two_scales/dry.csv).
 _MATTERING, _SEPARATE = 0.71, 2.0
 _MOST_BY_DEFAULT = 512  # nodes along the edge of such a patch, for some 10 s of solves
 _REACH = 0.5  # cell divided by sqrt(r z₀) for asperities of radius r (docs/adhesion.md)
@@ -83,6 +85,10 @@ def _where_waves_matter(case: CaseTables, folder: Path) -> Splitting | None:
         return None
     if _SEPARATE * wanted.split > _radius(case):
         return None
+    if case.yielding().model.grows:
+        rms = math.hypot(*(part.rms_height(folder) for part in case.roughness))
+        if case.indentation_at(case.depths()[0]) < rms:
+            return None
     sized = _sized(case, folder, wanted)
     return sized if sized.nodes <= _MOST_BY_DEFAULT else None
 

@@ -228,6 +228,10 @@ class MeasuredRoughness(Table):
         """The smaller edge (m) of a pixel."""
         return min(self._unmoved(folder).grid.spacing)
 
+    def rms_height(self, folder: Path) -> float:
+        """Rms height (m) of the whole scan."""
+        return float(self._unmoved(folder).height.std())
+
     def of_patches(self) -> Self:
         """The table whose patches all surfaces of this kind share."""
         seed = None if self.seed is None else PATCH_SEED
