@@ -2,8 +2,9 @@ r"""Impacts without adhesion: waves in patches, or left out, beside cells 8 time
 
     python -m evidence.two_scales.dry --topographies ../shared/topographies
 
-writes dry.csv, a row for each COR of 18 random cases (scan, twin and self-affine surfaces; constant
-and growing bound).
+appends to dry.csv a row for each COR of 24 random cases (scan, twin and self-affine surfaces;
+constant and growing bound). Cases that are in it are not solved again. The constants of the law and
+of its error were chosen on the seeds 300 to 335.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from restitution.surfaces import generate_surface
 
 TABLE = Path(__file__).with_suffix(".csv")
 FINER = 8
-CASES, FIRST = 18, 100
+CASES, FIRST = 24, 700
 SCANS = (
     # file, edge in um, detrend, what the file does not say, Rq in nm
     ("di-3.di", 10, "tilt", "", 230),
@@ -168,8 +169,7 @@ def radius(point: object) -> float:
 
 
 def summary() -> None:
-    with open(TABLE, newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = rows_so_far()
     number = lambda name: np.array([float(row[name]) for row in rows])  # noqa: E731
     direct = number("direct")
     for way in ("patch", "omit"):
@@ -184,10 +184,12 @@ def summary() -> None:
             f"{np.mean(off <= grid):.0%}; total error {np.nanmedian(total):.4f}, of the grid "
             f"{np.nanmedian(grid):.4f} in the median"
         )
-    print(
-        "ratio of the errors of the grid, median:",
-        round(float(np.nanmedian(number("patch_grid_error") / number("omit_grid_error"))), 3),
-    )
+    for name in ("error", "grid_error"):
+        patch, omit = number(f"patch_{name}"), number(f"omit_{name}")
+        print(
+            f"ratio of {name}, median: {np.nanmedian(patch / omit):.3f}, "
+            f"of the medians: {np.nanmedian(patch) / np.nanmedian(omit):.3f}"
+        )
 
 
 def main() -> None:
@@ -196,13 +198,30 @@ def main() -> None:
     parser.add_argument("--summary", action="store_true")
     given = parser.parse_args()
     if not given.summary:
-        with open(TABLE, "w", newline="") as file:
-            writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-            writer.writeheader()
-            for number in range(CASES):
-                writer.writerows(rows_of(number, given.topographies.resolve()))
-                file.flush()
+        done = {int(row["case"]) for row in rows_so_far()}
+        number = max(done, default=-1) + 1
+        while len(done) < CASES:
+            if rows := rows_of(number, given.topographies.resolve()):
+                append(rows)
+                done.add(number)
+            number += 1
     summary()
+
+
+def rows_so_far() -> list[dict[str, str]]:
+    if not TABLE.exists():
+        return []
+    with open(TABLE, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def append(rows: list[dict[str, object]]) -> None:
+    new = not TABLE.exists()
+    with open(TABLE, "a", newline="") as file:
+        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+        if new:
+            writer.writeheader()
+        writer.writerows(rows)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,9 @@ r"""Does COR depend on the split, the edge of the patches or the cells of the gr
     python -m evidence.two_scales.independence
 
 writes independence.csv: steel against steel, one surface with waves from 0.4 um and a roll-off at
-3 um, all of which the direct solve carries. The error is that of the scatter between patches.
+3 um, all of which the direct solve carries. The error consists of the scatter between patches, of
+waves that are not short beside the contact, and of the change of COR from the next split
+(docs/two-scales.md).
 """
 
 from __future__ import annotations
@@ -59,7 +61,10 @@ def main() -> None:
                 each = [cor(replace(contact, adhesion=replace(law, patches=(p,)))) for p in patches]
                 area = contact_area(contact)
                 factor = np.hypot(half_interval(len(patches)), nodes * CELL / np.sqrt(area))
-                error = np.std(each, axis=0, ddof=1) * factor
+                scatter = np.std(each, axis=0, ddof=1) * factor
+                without = cor(replace(contact, adhesion=None))
+                a = np.sqrt(real_area(contact) / math.pi)
+                error = np.hypot(scatter, 0.25 * wavelength / a * np.abs(own - without))
                 rows.append(
                     {
                         "way": f"{times * CELL * 1e6:.1f} um cells",
@@ -74,10 +79,28 @@ def main() -> None:
                     }
                 )
                 print(*rows[-1].values(), flush=True)
+    add_changes(rows)
     with open(TABLE, "w", newline="") as file:
         writer = csv.DictWriter(file, list(rows[-1]), lineterminator="\n", restval="")
         writer.writeheader()
         writer.writerows(rows)
+
+
+def add_changes(rows: list[dict[str, str]]) -> None:
+    """Add the change of COR from the next longer split, or from the shorter one if none is."""
+    split = [one for one in rows if one.get("split_um")]
+    for one in split:
+        wavelength, edges = float(one["split_um"]), float(one["patch_um"]) / float(one["split_um"])
+        beside = {
+            float(other["split_um"]): other
+            for other in split
+            if other["way"] == one["way"]
+            and abs(float(other["patch_um"]) / float(other["split_um"]) - edges) < 0.1
+        }
+        other = beside.get(2 * wavelength) or beside.get(0.5 * wavelength)
+        for v in VELOCITIES if other else ():
+            change = float(other[f"cor_{v:g}"]) - float(one[f"cor_{v:g}"])
+            one[f"error_{v:g}"] = f"{math.hypot(float(one[f'error_{v:g}']), change):.4f}"
 
 
 def row(values: np.ndarray) -> dict[str, str]:
@@ -87,6 +110,10 @@ def row(values: np.ndarray) -> dict[str, str]:
 def coarse_of(surface: Surface, times: int, law: PatchRepulsion | None) -> Contact:
     made = coarsen(surface, times)
     return Contact(PAIR, Surface(made.height, made.grid), ConstantBound(3e9), law)
+
+
+def real_area(contact: Contact) -> np.ndarray:
+    return np.array([solve_at_velocity(contact, v).contact_area for v in VELOCITIES])
 
 
 def contact_area(contact: Contact) -> np.ndarray:

@@ -5,10 +5,12 @@ import re
 import numpy as np
 import pytest
 
+from restitution.case import below_grid
 from restitution.case.below_grid import notice_of
 from restitution.case.case_file import parse_case
 from restitution.contact.patch.law import PatchAttraction, PatchRepulsion
 from restitution.errors import CaseError, SurfaceError
+from restitution.numerics import memory
 from restitution.surfaces.split import SplitSurface
 from tolerance import approx
 
@@ -97,6 +99,12 @@ def test_impossible_splits_name_the_key(tmp_path, values, named):
         case(**values).contact(tmp_path)
 
 
+def test_patches_larger_than_memory_are_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(memory, "available", lambda: 1e6)
+    with pytest.raises(CaseError, match=r"^roughness.split: patches of 96 x 96 .* too large; use"):
+        case().splitting(tmp_path)
+
+
 @pytest.mark.parametrize(
     "values",
     [
@@ -182,19 +190,19 @@ def test_adhesive_bodies_have_a_law_of_finite_range(tmp_path):
     )
 
 
-def scan_of(folder, more="", velocity="0.02 m/s", seed=0):
+def scan_of(folder, more="", velocity="0.02 m/s", seed=0, **values):
     """A case with white noise of Rq 2 nm as a scan."""
     rng = np.random.default_rng(seed)
     np.save(folder / "scan.npy", 2e-9 * rng.standard_normal((160, 160)))
-    text = CASE.format(**{**USUAL, "velocity": velocity})
+    text = CASE.format(**{**USUAL, "velocity": velocity, **values})
     a, b = text.index("[roughness]"), text.index("[grid]")
     scan = '[roughness]\nkind = "measured"\nfile = "scan.npy"\nsize = "24 um"\n'
     return parse_case(f"{text[:a]}{scan}{more}\n{text[b:]}")
 
 
 def test_a_scan_on_coarse_cells(tmp_path):
-    assert scan_of(tmp_path).contact(tmp_path).adhesion is None
-    given = scan_of(tmp_path, 'below_grid = "patch"')
+    assert scan_of(tmp_path, 'below_grid = "omit"').contact(tmp_path).adhesion is None
+    given = scan_of(tmp_path)
     contact = given.contact(tmp_path)
     assert isinstance(contact.adhesion, PatchRepulsion)
     patch = contact.adhesion.patches[0]
@@ -203,6 +211,50 @@ def test_a_scan_on_coarse_cells(tmp_path):
     finer = given.refined(4).contact(tmp_path)
     assert finer.adhesion is None
     assert finer.surface.height.std() > 1.5 * contact.surface.height.std()
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"velocity": "1 mm/s"},
+        {"spacing": "0.2 um"},
+        {"interface": 'work_of_adhesion = "0.05 J/m^2"'},
+        {"interface": "", "more": 'extend = "mirror"\nsplit = "13 um"', "velocity": "10 m/s"},
+    ],
+)
+def test_waves_of_a_scan_stay_out_where_they_do_not_matter(tmp_path, values):
+    """A light contact, half an octave, adhesion; a split given all the same."""
+    given = scan_of(tmp_path, **values)
+    assert (given.splitting(tmp_path) is None) == ("more" not in values)
+
+
+@pytest.mark.parametrize(("velocity", "matter"), [("0.5 m/s", True), ("0.02 m/s", False)])
+def test_contacts_on_few_asperities_under_a_growing_bound_keep_waves_out(
+    tmp_path, velocity, matter
+):
+    """Indentations are compared with the rms height, here 60 nm."""
+    given = scan_of(tmp_path, velocity=velocity)
+    np.save(tmp_path / "scan.npy", 30 * np.load(tmp_path / "scan.npy"))
+    update = {"yield_pressure": None, "yield_strength": 1e9}
+    growing = given.model_copy(update={"interface": given.interface.model_copy(update=update)})
+    assert growing.yielding().model.grows
+    assert given.splitting(tmp_path) is not None
+    assert (growing.splitting(tmp_path) is not None) == matter
+
+
+def test_patches_of_a_scan_that_take_long_are_not_the_default(tmp_path, monkeypatch):
+    assert scan_of(tmp_path).splitting(tmp_path) is not None
+    monkeypatch.setattr(below_grid, "_MOST_BY_DEFAULT", 20)
+    assert scan_of(tmp_path).splitting(tmp_path) is None
+    assert scan_of(tmp_path, 'below_grid = "patch"').splitting(tmp_path) is not None
+
+
+def test_waves_of_a_scan_between_elastic_bodies_stay_out(tmp_path):
+    elastic = scan_of(tmp_path).model_copy()
+    text = elastic.interface.model_copy(update={"yield_pressure": float("inf")})
+    elastic = elastic.model_copy(update={"interface": text})
+    assert elastic.splitting(tmp_path) is None
+    assert scan_of(tmp_path).splitting(tmp_path) is not None
 
 
 def test_a_split_of_a_scan_asks_for_patches(tmp_path):

@@ -16,6 +16,7 @@ def surface_of(case_text, tmp_path):
     height = 1e-8 * np.random.default_rng(1).standard_normal(PIXELS.nodes)
     np.save(tmp_path / "scan.npy", height)
     table = '[[roughness]]\nkind = "measured"\nfile = "scan.npy"\nsize = "12 um"\n'
+    table += 'below_grid = "omit"\n'
 
     def call(more="", refined=1, nodes=24, also=""):
         grid = f'[grid]\nnodes = {nodes}\nspacing = "0.4 um"\nrefine = {refined}\n'

@@ -11,6 +11,7 @@ from restitution.contact.cohesive.law import Cohesive
 from restitution.contact.loading import step
 from restitution.contact.patch import repulsion, stored
 from restitution.contact.patch.attraction import AttractionTable
+from restitution.contact.patch.growth import PatchBounds
 from restitution.contact.patch.law import PatchAttraction, PatchRepulsion, flat
 from restitution.contact.patch.repulsion import PatchCurve, RepulsionTable
 from restitution.surfaces.refine import coarsen
@@ -21,7 +22,7 @@ BODY = rs.Body(radius=250e-6, youngs_modulus=231e9, poissons_ratio=0.3, density=
 PAIR = rs.Pair(BODY, replace(BODY, radius=math.inf))
 CELL = 0.1e-6
 ROUGH = {"kind": "self-affine", "hurst": 0.8, "rolloff": 6e-6, "shortest": 0.6e-6}
-HARD = rs.ConstantBound(3e9)
+HARD, GROWING = rs.ConstantBound(3e9), rs.ExpandingCavity(1e9)
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +44,7 @@ def work_of(path):
     return np.trapezoid([s.force for s in path], [s.indentation for s in path])
 
 
-@pytest.mark.parametrize("plasticity", [HARD, rs.ExpandingCavity(1e9)])
+@pytest.mark.parametrize("plasticity", [HARD, GROWING])
 def test_the_work_of_a_patch_is_stored_or_dissipated(two_scales, plasticity):
     patch = two_scales.adhesion.patches[0]
     contact = rs.Contact(flat(PAIR), patch, periodic=True)
@@ -62,6 +63,38 @@ def test_the_work_of_a_patch_is_stored_or_dissipated(two_scales, plasticity):
         lost = work[2] * table.of_gap(table.lost, gap[2])
         assert lost == approx(direct.plastic_work / area, rel=0.02)
         assert work[2] - lost == approx(direct.stored_energy / area, rel=0.02)
+
+
+@pytest.fixture(scope="module")
+def bounds(two_scales):
+    contact = rs.Contact(flat(PAIR), two_scales.adhesion.patches[0], periodic=True)
+    touch = float(contact.gap.mean())
+    return PatchBounds.of(contact, GROWING, [share * touch for share in (0.2, 0.5, 0.8, 0.99)])
+
+
+def test_valleys_have_the_bound_of_first_yield(bounds):
+    first = GROWING.first_yield_pressure(PAIR)
+    depth = 0.4 * float(bounds.contact.gap.mean())
+    limit = bounds.at(depth, bounds.elastic(depth))
+    touching = rs.solve(bounds.contact, depth).pressure > 0
+    assert limit.min() == approx(first)
+    assert limit[touching].mean() > 1.03 * first
+    assert limit[~touching].mean() < limit[touching].mean()
+
+
+def test_bounds_of_complete_contact_are_those_of_smooth_bodies_in_the_mean(bounds):
+    nominal = 3 * float(bounds.nominal[-1])
+    limit = bounds.at(2 * float(bounds.depth[-1]), nominal)
+    smooth = float(GROWING.bound_at(PAIR, np.asarray(nominal)))
+    assert limit.std() > 0
+    assert limit.mean() == approx(smooth, rel=0.02)
+
+
+def test_the_mean_bound_of_a_patch_is_below_that_of_smooth_bodies(bounds):
+    smooth, ratio = bounds.of_mean()
+    assert (np.diff(smooth) >= 0).all()
+    assert 0.6 < ratio[-1] < 1
+    assert ratio[0] >= 1  # asperities yield later than smooth bodies at first yield
 
 
 def test_the_gap_is_the_inverse_of_the_pressure(two_scales):
@@ -96,7 +129,7 @@ def test_a_second_loading_returns_to_the_deepest_state(two_scales):
     assert deeper.force == approx(rs.solve(two_scales, 230e-9).force, rel=2e-3)
 
 
-@pytest.mark.parametrize("plasticity", [HARD, rs.ExpandingCavity(1e9)])
+@pytest.mark.parametrize("plasticity", [HARD, GROWING])
 def test_restitution_is_that_of_cells_that_carry_all_waves(surface, two_scales, plasticity):
     fine = rs.Contact(PAIR, surface, plasticity)
     coarse = replace(two_scales, plasticity=plasticity)

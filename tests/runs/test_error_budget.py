@@ -3,6 +3,7 @@
 import json
 import math
 import re
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -15,7 +16,7 @@ from restitution.curve.work_curve import WorkCurve
 from restitution.errors import NotConvergedError
 from restitution.results.writer import ResultsFolder
 from restitution.runs import depths as depths_module
-from restitution.runs.companions import Companions, coarser_contact, curve_of
+from restitution.runs.companions import Companions, ScaleCurves, coarser_contact, curve_of
 from restitution.runs.convergence import run_convergence
 from restitution.runs.ensemble import run_realisations
 from restitution.runs.error_budget import (
@@ -304,6 +305,7 @@ file = "{file}"
 detrend = "tilt"
 extend = "twin"
 seed = 1
+below_grid = "omit"
 [grid]
 nodes = [96, 96]
 spacing = "0.25 um"
@@ -391,3 +393,18 @@ def test_other_curves_of_a_cohesive_contact_are_compared_at_the_same_impacts(tmp
     assert other.at(work) == approx(full.at(work), abs=0.01)
     assert other.ratio(work) == approx(full.ratio(work), abs=0.02)
     assert other.pull_off_at(work) == approx(full.pull_off_at(work), rel=0.08)
+
+
+def test_waves_that_are_not_short_beside_the_contact_have_an_error():
+    def curve(e):
+        return WorkCurve(np.array([1.0, 10.0]), e**2 * np.array([1.0, 10.0]), np.zeros(2))
+
+    own, without = curve(0.8), curve(0.9)
+    scales = ScaleCurves(own, (), None, without, edge=1.0, wavelength=2e-6)
+    work, area = np.array([2.0, 5.0]), math.pi * np.array([1e-6, 4e-6]) ** 2
+    errors = scales.separation_error(work, area)
+    assert errors[0] == approx(4 * errors[1])
+    assert errors[1] == approx(0.25 * 0.5 * 0.1, rel=1e-3)
+    growing = replace(scales, weaker=own).separation_error(work, area)
+    assert growing[1] == approx(math.hypot(0.125, 0.5) * 0.1, rel=1e-3)
+    assert not replace(scales, without=None).separation_error(work, area).any()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -15,7 +16,7 @@ from restitution.case.roughness_keys import ADHESIVE_CELLS, CELLS, BelowGrid, St
 from restitution.case.tables import CaseTables
 from restitution.contact.checks.resolution import predicted_radius
 from restitution.display import quantity
-from restitution.errors import CaseError
+from restitution.errors import CaseError, RestitutionError
 from restitution.numerics import memory
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface, refine, rms_slope
@@ -30,6 +31,12 @@ TILES = 2  # patches along each edge of the window from which they are cut
 _MOST_NODES = 2048  # along the edge of a patch
 _BYTES = 250.0  # per node of a window
 _MOST_REFINED = 512  # nodes along the edge of a patch that is refined for its adhesion
+# By default the waves of a scan go into patches if bodies yield without adhesion, if half an octave
+# is below the split, and if the contact radius is at least so many splits at the largest depth. If
+# the bound grows, all indentations must be at least the rms height: the error of contacts on fewer
+# asperities holds too rarely (evidence/two_scales/dry.csv).
+_MATTERING, _SEPARATE = 0.71, 2.0
+_MOST_BY_DEFAULT = 512  # nodes along the edge of such a patch, for some 10 s of solves
 _REACH = 0.5  # cell divided by sqrt(r z₀) for asperities of radius r (docs/adhesion.md)
 
 
@@ -54,14 +61,42 @@ def splitting_of(case: CaseTables, folder: Path) -> Splitting | None:
 
     Raises `CaseError` if a split is needed or given, but impossible.
     """
+    grid = case.grid.grid()
+    if grid is None or not case.roughness:
+        return None
+    if _choice(case) is None and not _adds_waves(case, grid):
+        with suppress(RestitutionError):  # whoever makes the contact says what is wrong
+            return _where_waves_matter(case, folder)
+        return None
     wanted = _wanted(case, folder)
     if wanted is None:
         return None
-    deepest = case.indentation_at(case.depths()[-1])
-    radius = predicted_radius(case.pair(), deepest, case.yielding().hardness)
+    radius = _radius(case)
     if wanted.split > radius:
         raise CaseError(_not_separate(case, wanted, radius))
     return _sized(case, folder, wanted)
+
+
+def _where_waves_matter(case: CaseTables, folder: Path) -> Splitting | None:
+    if case.interface.adhesive_energy or math.isinf(case.yielding().hardness):
+        return None
+    wanted = _wanted(case, folder)
+    if wanted is None or wanted.shortest > _MATTERING * wanted.split:
+        return None
+    if _SEPARATE * wanted.split > _radius(case):
+        return None
+    if case.yielding().model.grows:
+        rms = math.hypot(*(part.rms_height(folder) for part in case.roughness))
+        if case.indentation_at(case.depths()[0]) < rms:
+            return None
+    sized = _sized(case, folder, wanted)
+    return sized if sized.nodes <= _MOST_BY_DEFAULT else None
+
+
+def _radius(case: CaseTables) -> float:
+    """Contact radius (m) of smooth bodies at the largest depth."""
+    deepest = case.indentation_at(case.depths()[-1])
+    return predicted_radius(case.pair(), deepest, case.yielding().hardness)
 
 
 def notice_of(case: CaseTables, folder: Path) -> str | None:
@@ -74,6 +109,7 @@ def notice_of(case: CaseTables, folder: Path) -> str | None:
 class _Wanted(NamedTuple):
     split: float  # wavelength (m)
     least: float  # the shortest wave (m) of the grid
+    shortest: float  # the shortest wave (m) of the patches
     cell: float  # of the patches (m)
 
 
@@ -91,14 +127,13 @@ def _wanted(case: CaseTables, folder: Path) -> _Wanted | None:
             "kurtosis; leave below_grid and split out"
         )
     added = _adds_waves(case, grid)
-    if choice is None and not added:
-        return None
     # A finer grid carries more waves of a scan, but no more waves of a generated surface.
     fine = divided(grid, case.grid.factor)
     least = 2 * max(grid.spacing if added else fine.spacing)
     split = _given(case) or max(_cells(case) * max(fine.spacing), least)
     cell = min(part.patch_cell(grid, folder) for part in parts)
-    if min(part.shortest_wave(grid, folder) for part in parts) > split * (1 - 1e-9):
+    shortest = min(part.shortest_wave(grid, folder) for part in parts)
+    if shortest > split * (1 - 1e-9):
         return None
     if split < least * (1 - 1e-9):
         raise CaseError(
@@ -106,7 +141,7 @@ def _wanted(case: CaseTables, folder: Path) -> _Wanted | None:
             "between would be in neither the grid nor the patches; use a larger split or a smaller "
             "grid.spacing"
         )
-    return _Wanted(split, least, cell)
+    return _Wanted(split, least, shortest, cell)
 
 
 def _adds_waves(case: CaseTables, grid: Grid) -> bool:

@@ -153,6 +153,10 @@ class GeneratedRoughness(Table):
         """Cell (m) that resolves the shortest wave in a patch."""
         return self.shortest_wave(grid, folder) / PER_WAVE
 
+    def rms_height(self, folder: Path) -> float:
+        """Rms height (m)."""
+        return self.rms
+
     def of_patches(self) -> Self:
         """The table whose patches all surfaces of this kind share."""
         return self.model_copy(update={"seed": PATCH_SEED, "realisations": 1})

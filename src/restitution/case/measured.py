@@ -228,6 +228,10 @@ class MeasuredRoughness(Table):
         """The smaller edge (m) of a pixel."""
         return min(self._unmoved(folder).grid.spacing)
 
+    def rms_height(self, folder: Path) -> float:
+        """Rms height (m) of the whole scan."""
+        return float(self._unmoved(folder).height.std())
+
     def of_patches(self) -> Self:
         """The table whose patches all surfaces of this kind share."""
         seed = None if self.seed is None else PATCH_SEED
@@ -235,7 +239,7 @@ class MeasuredRoughness(Table):
 
     def stamp(self, folder: Path) -> Stamp:
         """Time and size of the file; None if it is missing, which whoever reads it says."""
-        with suppress(OSError):
+        with suppress(OSError, ValueError):  # a name may contain a null character
             stat = (folder / self.file).stat()
             return stat.st_mtime_ns, stat.st_size
         return None

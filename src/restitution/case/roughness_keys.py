@@ -36,8 +36,9 @@ BELOW_GRID = Key(
     'what happens to waves that the grid does not carry ([two scales](two-scales.md)): `"patch"` '
     'solves them on periodic patches, whose law the contact uses; `"omit"` leaves them out, and '
     "the total error includes them",
-    default='`"omit"` for scans, `"patch"` for generated waves below two cells',
-    page=Input("Waves below the grid", more=True, empty="left out of scans"),
+    default='`"patch"` for generated waves below two cells, and for scans where their waves matter '
+    "and bodies do not adhere",
+    page=Input("Waves below the grid", more=True, empty="on patches where they matter"),
 )
 SPLIT = Key(
     "wavelength at which the surface is split: shorter waves go into the patches; at least two "

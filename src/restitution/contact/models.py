@@ -137,6 +137,21 @@ class Plasticity(ABC):
         """The model of asperities whose mean contact pressure (Pa), if elastic, has this value."""
         return self
 
+    def bound_of_waves(
+        self, contact: Contact, depth: float, measure: Array, nominal: float
+    ) -> Array:
+        """Bound (Pa) at each node of a patch of short waves, at a `depth` (m).
+
+        `measure` (Pa) is the elastic pressure at twice the indentation divided by √2, `nominal`
+        (Pa) the nominal pressure there.
+        """
+        return np.full(measure.shape, self.hardness)
+
+    def smooth_bounds(self, pair: Pair, count: int) -> tuple[Array, Array]:
+        """`count` values of `measure` (Pa) up to full plasticity, and their bounds (Pa)."""
+        values = np.full(count, self.hardness)
+        return values, values
+
     def difference(self, contact: Contact, restitution: float) -> float:
         """Largest relative difference from finite elements, at the COR due to plasticity alone.
 

@@ -49,7 +49,16 @@ _SHALLOWER, _DEEPER = 0.5, 1.3
 _MOST_PATHS = 3  # largest number of impacts of other companion curves that follow a path
 
 # Error of a bound that grows if patches have one of their own, beside that of a fine grid.
-_OF_GROWTH = 0.08
+_OF_GROWTH = 0.06
+# Scatter between patches of a run, divided by that between its companion's, whose waves are twice
+# as long in patches as large.
+_OF_SHORTER = 0.5
+# Error of the change of COR by the patches, as a fraction of this change, where the radius of the
+# real contact area is the wavelength of the split; and the largest ratio of wavelength to radius.
+_OF_CHANGE, _LARGEST_RATIO = 0.25, 10.0
+# The same fraction at any radius if the bound grows: where few asperities of the long waves carry
+# the contact, their bulk yields too early.
+_OF_GROWING_CHANGE = 0.5
 
 
 def curve_of(
@@ -115,20 +124,23 @@ def _around(contact: Contact, works: Sequence[float]) -> list[Load]:
 class ScaleCurves:
     """Curves that show the errors of a law of patches.
 
-    `single` has the curve of the law of each patch, and `weaker` that of weaker bodies if their
-    bound grows. `edge` is that of a patch (m).
+    `single` has the curve of the law of each patch, `weaker` that of weaker bodies if their bound
+    grows, and `without` that without the waves of the patches if the bodies do not attract each
+    other. `edge` is that of a patch, and `wavelength` that of the split of the run (m).
     """
 
     own: WorkCurve
     single: tuple[WorkCurve, ...]
     weaker: WorkCurve | None
+    without: WorkCurve | None
     edge: float
+    wavelength: float
 
     @classmethod
     def of(
         cls, companions: Companions, law: PatchLaw, how: Splitting, progress: Say
     ) -> ScaleCurves:
-        single, coarse, weaker = [], companions.coarse, None
+        single, coarse, weaker, without = [], companions.coarse, None, None
         for number, patch in enumerate(law.patches, 1):
             progress(f"error: patch {number} of {len(law.patches)}")
             alone = replace(law, patches=(patch,))
@@ -136,7 +148,10 @@ class ScaleCurves:
         if coarse.plasticity.grows:
             weak = replace(coarse, plasticity=coarse.plasticity.scaled(1 - _OF_GROWTH))
             weaker = companions.curve(weak)
-        return cls(companions.reference, tuple(single), weaker, how.nodes * how.cell)
+        if not law.attracts:
+            without = companions.curve(replace(coarse, adhesion=None))
+        edge = how.nodes * how.cell
+        return cls(companions.reference, tuple(single), weaker, without, edge, how.wavelength)
 
     def error(self, quantity_of: Callable[[WorkCurve], Array], area: Array | float) -> Array:
         """Error of a quantity due to the scatter of patches, and to a bound that grows.
@@ -151,8 +166,23 @@ class ScaleCurves:
             return np.asarray(growth)
         deviation = np.std([quantity_of(curve) for curve in self.single], axis=0, ddof=1)
         sample = np.sqrt(self.edge**2 / np.maximum(area, 1e-300))
-        scatter = deviation * np.hypot(half_interval(len(self.single)), sample)
+        # Laws with attraction have not been compared.
+        share = 1.0 if self.without is None else _OF_SHORTER
+        scatter = share * deviation * np.hypot(half_interval(len(self.single)), sample)
         return np.asarray(np.hypot(scatter, growth))
+
+    def separation_error(self, work: Array, area: Array) -> Array:
+        """Error of COR at `work` (J) as a fraction of its change by the patches.
+
+        Waves are not short beside the real `area` (m²), and a bound that grows is approximate.
+        """
+        if self.without is None:
+            return np.zeros(work.size)
+        ratio = self.wavelength / np.sqrt(np.maximum(area, 1e-300) / math.pi)
+        fraction = _OF_CHANGE * np.minimum(ratio, _LARGEST_RATIO)
+        if self.weaker is not None:
+            fraction = np.hypot(fraction, _OF_GROWING_CHANGE)
+        return np.asarray(fraction * np.abs(self.own.at(work) - self.without.at(work)))
 
 
 @dataclass(frozen=True)

@@ -25,6 +25,7 @@ from restitution.runs.depths import later_touches
 from restitution.runs.error_budget import (
     MISSING_BAND,
     OmittedWaves,
+    error_of_law,
     interrupted_errors,
     spread_errors,
     total_error_summary,
@@ -48,7 +49,10 @@ class _OnGrid:
 
 @dataclass(frozen=True)
 class _Spread:
-    """Errors by surface and materials, and `unseen_yield` and `OmittedWaves.octaves`."""
+    """Errors by surface and materials, `OmittedWaves.octaves`, and what no grid of the study shows.
+
+    `unseen` is `unseen_yield`, or `error_of_law` with waves in patches.
+    """
 
     errors: dict[str, Any]
     unseen: float
@@ -137,8 +141,11 @@ def _spread_of(
     impacts = list(reached.values())
     waves = OmittedWaves.of(case.surface(folder))
     companions = Companions(case, folder, sorted(point.indentation for point in impacts))
-    log.progress("error: yielding on a finer grid")
-    unseen = unseen_yield(companions, waves, impacts)
+    if scales := companions.scales(log.progress):
+        unseen = error_of_law(scales, companions, impacts)
+    else:
+        log.progress("error: yielding on a finer grid")
+        unseen = unseen_yield(companions, waves, impacts)
     work = array(impacts, "loading_work")
     errors = spread_errors(companions, work, log.progress, parts=log.material_parts)
     return {

@@ -21,7 +21,7 @@ from restitution.curve.point import Point
 from restitution.display import counted
 from restitution.numerics.intervals import half_interval
 from restitution.runs.attraction import with_pull_off_errors
-from restitution.runs.companions import SURFACES, Companions
+from restitution.runs.companions import SURFACES, Companions, ScaleCurves
 from restitution.runs.log import Say, ignore
 from restitution.runs.material_advice import MaterialPart, advice, as_rows
 from restitution.runs.material_parts import material_parts
@@ -118,14 +118,21 @@ def grid_error(
     return np.sqrt(near**2 + band**2 + unseen**2 + floor**2), band
 
 
+def error_of_law(scales: ScaleCurves, companions: Companions, points: Sequence[Point]) -> Array:
+    """Error of COR of `points` due to the law of patches (docs/two-scales.md)."""
+    work, real = array(points, "loading_work"), array(points, "contact_area")
+    nominal = array(points, "contact_nodes") * companions.cell_area
+    by_law = scales.error(lambda curve: curve.at(work), nominal)
+    return np.asarray(np.hypot(by_law, scales.separation_error(work, real)))
+
+
 def law_error(change: Array, by_law: Array, work: Array) -> Array:
     """Discretisation error of COR of each point of a contact whose waves are in patches.
 
     No wave is left out, and the law is smooth, so few nodes are enough (docs/two-scales.md).
-    `by_law` is the error of the law; for the others see `grid_error`.
+    `by_law` is the result of `error_of_law`; for the others see `grid_error`.
     """
-    near, law = _smoothed(change**2, work, _NEAR_GRID), _smoothed(by_law**2, work, _NEAR_SURFACE)
-    return np.asarray(np.sqrt(near + law))
+    return np.asarray(np.sqrt(_smoothed(change**2, work, _NEAR_SURFACE) + by_law**2))
 
 
 def widened_error(
@@ -233,8 +240,7 @@ class ErrorBudget:
         self._progress("error: cells twice as large")
         change = array(points, "restitution") - companions.own.at(work)
         if scales := companions.scales(self._progress):
-            area = array(points, "contact_nodes") * companions.cell_area
-            by_law = scales.error(lambda curve: curve.at(work), area)
+            by_law = error_of_law(scales, companions, points)
             errors, band = law_error(change, by_law, work), np.zeros(work.size)
         else:
             unseen = unseen_yield(companions, waves, points)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from restitution.contact.contact import Contact
-from restitution.contact.loading import solve
+from restitution.contact.equilibrium import solve_nonadhesive
 from restitution.contact.models import Plasticity
+from restitution.contact.patch.growth import PatchBounds
 from restitution.contact.patch.stored import bodies_in_words, kept
 from restitution.contact.state import Array, State
 from restitution.errors import DomainError
@@ -21,8 +22,11 @@ from restitution.numerics.tabulated import Tabulated
 _INDENTATIONS = (*np.geomspace(0.02, 0.5, 14), *np.arange(0.6, 1.0, 0.08), 0.99)
 _FLOWING = (*np.arange(1.1, 2.0, 0.15), 2.5, 3.5)
 _COMPLETE = 0.985  # a patch ends at this fraction of its yield pressure
+# Between elastic bodies at the same indentation, the nominal pressure of a patch is between that of
+# an elastic patch at the same gap and that of the yielding patch: their geometric mean.
+_GIVEN, _PASSES = 0.5, 2
 _CELLS = 1024  # of the table
-_TOLERANCE, _ROUGH = 1e-6, 1e-4
+_TOLERANCE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +35,8 @@ class PatchCurve:
 
     `gap` (m) is the distance of the mean planes before deformation, `pressure` (Pa) the nominal
     pressure, `stored` the elastic energy per area (J/m²), `area` the relative contact area, and
-    `separation` the gap (m) at which unloading ends.
+    `separation` the gap (m) at which unloading ends. `bound_ratio` is the mean bound of the patch
+    divided by that of smooth bodies, where this is `smooth_bound` (Pa).
     """
 
     gap: Array
@@ -39,6 +44,8 @@ class PatchCurve:
     stored: Array
     area: Array
     separation: Array
+    smooth_bound: Array
+    bound_ratio: Array
 
     @classmethod
     def of(cls, contact: Contact, plasticity: Plasticity) -> PatchCurve:
@@ -61,34 +68,40 @@ class PatchCurve:
 
 def _columns(contact: Contact, plasticity: Plasticity) -> dict[str, Array]:
     touch, nominal = float(contact.gap.mean()), math.prod(contact.grid.size)
-    rows = [(touch, 0.0, 0.0, 0.0, touch)]
-    for state in _states(contact, plasticity, touch):
+    rows, bounds = [(touch, 0.0, 0.0, 0.0, touch)], None
+    if plasticity.grows:
+        bounds = PatchBounds.of(contact, plasticity, [s * touch for s in _INDENTATIONS])
+    for state in _states(contact, plasticity, touch, bounds):
         at = touch - state.separation_indentation
         row = state.nominal_pressure, state.stored_energy / nominal, state.relative_area
         rows.append((touch - state.indentation, *row, at))
     names = "gap", "pressure", "stored", "area", "separation"
-    return dict(zip(names, np.array(rows).T, strict=True))
+    columns = dict(zip(names, np.array(rows).T, strict=True))
+    smooth, ratio = (np.ones(1), np.ones(1)) if bounds is None else bounds.of_mean()
+    return columns | {"smooth_bound": smooth, "bound_ratio": ratio}
 
 
-def _states(contact: Contact, plasticity: Plasticity, touch: float) -> Iterator[State]:
+def _states(
+    contact: Contact, plasticity: Plasticity, touch: float, bounds: PatchBounds | None
+) -> Iterator[State]:
     flowing = _FLOWING if math.isfinite(plasticity.hardness) else ()
-    for share in (*_INDENTATIONS, *flowing):
-        model = plasticity
-        if plasticity.grows:
-            pressure = _contact_pressure(contact, min(share, _INDENTATIONS[-1]) * touch)
-            model = plasticity.of_asperities(contact.pair, pressure)
+    given = 1.0
+    for depth in touch * np.array([*_INDENTATIONS, *flowing]):
         try:
-            state = solve(replace(contact, plasticity=model), share * touch, residual=_TOLERANCE)
+            if bounds is None:
+                limit: Array | float = plasticity.hardness
+                state = solve_nonadhesive(contact, depth, limit, _TOLERANCE)
+            else:
+                elastic = bounds.elastic(depth)
+                for _ in range(_PASSES):
+                    limit = bounds.at(depth, elastic * given**_GIVEN)
+                    state = solve_nonadhesive(contact, depth, limit, _TOLERANCE)
+                    given = state.nominal_pressure / elastic
         except DomainError:  # the contact of elastic bodies is complete
             return
         yield state
-        if state.nominal_pressure > _COMPLETE * model.hardness:
+        if state.nominal_pressure > _COMPLETE * np.mean(limit):
             return
-
-
-def _contact_pressure(contact: Contact, indentation: float) -> float:
-    state = solve(contact, indentation, residual=_ROUGH)
-    return state.nominal_pressure / max(state.relative_area, 1e-12)
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,12 +113,16 @@ class RepulsionTable:
         lost: Share of the work of loading that yielding dissipates.
         area: Relative contact area.
         range: Distance (m) from the gap of a loaded patch to the gap where its unloading ends.
+        smooth_bound: Bounds of smooth bodies (Pa), ascending.
+        bound_ratio: Mean bound of the patches divided by each `smooth_bound`.
     """
 
     pressure: Tabulated
     lost: Array
     area: Array
     range: Array
+    smooth_bound: Array
+    bound_ratio: Array
 
     @classmethod
     def of(cls, curves: Sequence[PatchCurve], *, elastic: bool = False) -> RepulsionTable:
@@ -118,7 +135,14 @@ class RepulsionTable:
         share = np.divide(stored, work, out=np.ones_like(work), where=work > 0)
         lost = np.clip(1 - share, 0.0, 0.0 if elastic else 1.0)
         lost[-1] = lost[-2]
-        return cls(pressure, lost, area, np.maximum(length, 1e-6 * (last - first)))
+        ratio = np.mean([c.bound_ratio for c in curves], axis=0)
+        length = np.maximum(length, 1e-6 * (last - first))
+        return cls(pressure, lost, area, length, curves[0].smooth_bound, ratio)
+
+    def bulk_bound(self, smooth: Array) -> Array:
+        """Bound of the nominal pressure (Pa) where smooth bodies have the bound `smooth` (Pa)."""
+        mean = smooth * np.interp(smooth, self.smooth_bound, self.bound_ratio)
+        return np.asarray(np.minimum(mean, self.pressure.values[0]))
 
     @property
     def touch(self) -> float:

@@ -197,6 +197,20 @@ class ExpandingCavity(Plasticity):
         largest = np.asarray(_PEAK * elastic_pressure)
         return ConstantBound(float(self.bound_at(pair, largest)))
 
+    def bound_of_waves(
+        self, contact: Contact, depth: float, measure: Array, nominal: float
+    ) -> Array:
+        merged = nominal / np.maximum(measure, nominal)
+        separate = 1 - merged * np.sqrt(merged)
+        ratio = _depth_ratio(contact.crest_gap, depth) ** separate
+        return self.bound_at(contact.pair, measure * ratio, contact.elongation * separate)
+
+    def smooth_bounds(self, pair: Pair, count: int) -> tuple[Array, Array]:
+        first = self.first_yield_pressure(pair)
+        last = first * math.exp((LARGEST - first / self.yield_strength) / GROWTH)
+        measure = np.geomspace(first, last, count)
+        return measure, self.bound_at(pair, measure)
+
     def difference(self, contact: Contact, restitution: float) -> float:
         steepness = contact.pair.contact_modulus * contact.slope / self.yield_strength
         return float(
