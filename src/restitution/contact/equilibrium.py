@@ -287,6 +287,12 @@ def candidate_box(contact: Contact, indentation: float, history: State | None = 
 
     Without adhesion, no other node can come into contact.
     """
+    if history is None and not contact.periodic:
+        below = [np.flatnonzero(smallest < indentation) for smallest in contact.smallest_gaps]
+        if not all(part.size for part in below):
+            return None
+        rows, columns = (slice(int(part[0]), int(part[-1]) + 1) for part in below)
+        return rows, columns
     whole = region = whole_grid(contact)
     gap = contact.gap
     if history is not None:
@@ -294,10 +300,10 @@ def candidate_box(contact: Contact, indentation: float, history: State | None = 
             # On unloading, no new contact arises outside the box of `history`.
             region = widen(history.box, 2, contact.grid.nodes)
         gap = gap[region] + history.plastic_displacement[region]
-    below = gap < indentation
+    touching = gap < indentation
     if contact.periodic:
-        return whole if below.any() else None
-    return bounding_box(below, region)
+        return whole if touching.any() else None
+    return bounding_box(touching, region)
 
 
 def separated_state(contact: Contact, indentation: float, history: State | None = None) -> State:

@@ -18,7 +18,6 @@ from dataclasses import dataclass, replace
 from typing import cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.arguments import typed
 from restitution.contact.bodies import Pair
@@ -29,11 +28,9 @@ from restitution.contact.plasticity.bound import ConstantBound
 from restitution.contact.state import Array, State
 from restitution.display import quantity
 from restitution.errors import CaseError
-from restitution.numerics.box import Box
+from restitution.numerics.box import Box, shape_of
 from restitution.numerics.read_only import freeze
 from restitution.theory import Hertz, yield_coefficient
-
-Nodes = tuple[NDArray[np.intp], ...]  # indices of rows and columns
 
 # Ratio of pressure to yield strength of a fully plastic contact (Tabor 1951).
 FULL_CONSTRAINT = 2.8
@@ -180,6 +177,8 @@ class ExpandingCavity(Plasticity):
 
     def with_loading_work(self, state: State, start: State | None, load: Load) -> State:
         contact, indentation = state.contact, state.indentation
+        if not state.plastic_displacement[state.box].any():
+            return state
         first = _SHALLOW * indentation if start is None else start.indentation
         steps = max(1, math.ceil(math.log(indentation / first) / math.log(_RATIO) - 1e-9))
         depths = first * (indentation / first) ** (np.arange(steps) / steps)
@@ -208,20 +207,22 @@ def yield_bound(contact: Contact, indentation: float, residual: float) -> tuple[
     bound = np.full(contact.grid.nodes, contact.first_yield_pressure)
     tolerance = min(_RESIDUAL_FACTOR * residual, _LARGEST_RESIDUAL)
     pressure, box, convolutions = elastic_pressure(contact, _DEPTH_FACTOR * indentation, tolerance)
-    nodes = np.nonzero(pressure)
-    measure = pressure[nodes]
+    nodes = np.flatnonzero(pressure)
+    measure = pressure.ravel()[nodes].astype(np.float64)
     force = float(measure.sum()) * contact.grid.cell_area
     measure *= 1 / math.sqrt(_DEPTH_FACTOR)
-    merged = _smooth_pressure(contact, box, nodes, force) / measure
+    merged = _smooth_pressure(contact, box, force).ravel()[nodes] / measure
     separate = np.maximum(1 - merged * np.sqrt(merged), 0)
-    apart = np.nonzero(separate)
-    at_apart = tuple(index[apart] for index in nodes)
-    depth_ratio = _depth_ratio(contact.crest_gap[box][at_apart], indentation)
-    ridge = contact.elongation[box][at_apart] * separate[apart]
-    model, pair = cast(ExpandingCavity, contact.plasticity), contact.pair
-    bounds = model.bound_at(pair, measure)
-    bounds[apart] = model.bound_at(pair, measure[apart] * depth_ratio ** separate[apart], ridge)
-    bound[box][nodes] = bounds
+    apart = np.flatnonzero(separate)
+    at_apart, separate = nodes[apart], separate[apart]
+    depth_ratio = _depth_ratio(contact.crest_gap[box].ravel()[at_apart], indentation)
+    ridge = np.zeros_like(measure)
+    ridge[apart] = contact.elongation[box].ravel()[at_apart] * separate
+    measure[apart] *= depth_ratio**separate
+    model = cast(ExpandingCavity, contact.plasticity)
+    bound[box][np.unravel_index(nodes, shape_of(box))] = model.bound_at(
+        contact.pair, measure, ridge
+    )
     return freeze(bound), convolutions
 
 
@@ -231,10 +232,11 @@ def _depth_ratio(crest_gap: Array, indentation: float) -> Array:
     return _DEPTH_FACTOR * depth / (_DEPTH_FACTOR * indentation - crest_gap)
 
 
-def _smooth_pressure(contact: Contact, box: Box, nodes: Nodes, force: float) -> Array:
+def _smooth_pressure(contact: Contact, box: Box, force: float) -> Array:
+    """Pressure (Pa) on `box` between smooth bodies under a `force` (N)."""
     smooth = Hertz(contact.pair.radius, contact.pair.contact_modulus)
     x, y = contact.grid.x[box[0]] - contact.apex[0], contact.grid.y[box[1]] - contact.apex[1]
-    return smooth.pressure(np.hypot(x[nodes[0]], y[nodes[1]]), smooth.indentation(force))
+    return smooth.pressure(np.sqrt(np.add.outer(x * x, y * y)), smooth.indentation(force))
 
 
 def _on(bound: Array | float, box: Box) -> Array:
