@@ -42,7 +42,7 @@ Guess = tuple[Array, Array]  # p and K p
 _COARSE_ACCURACY = 1e-3  # tolerance on coarser grids, as a fraction of the largest b
 _SINGLE = 1e-5  # smallest tolerance, as a fraction of the largest b, for single precision
 _PLACES = 12  # number of local means along each axis (see the module `local_mean`)
-_PASSES = 4  # Newton steps that restore the local means of the guess
+_PASSES = 3  # Newton steps that restore the local means of the guess
 # Length of the last step, as a multiple of the preconditioned gradient. Any length from 0.3 to 0.8
 # halves the error of the result, as another iteration would, but without a product with K.
 _LAST_STEP = 0.6
@@ -63,9 +63,7 @@ def solve_near_guess(
     if tolerance >= _SINGLE * float(b.max()):
         b = b.astype(np.float32)
     guess = _guess(operators, b) if min(b.shape) >= MIN_NODES_FOR_GUESS else None
-    return _solve_around(
-        guess, operators, b, 0, tolerance=tolerance, max_iterations=max_iterations
-    )
+    return _solve_around(guess, operators, b, 0, tolerance=tolerance, max_iterations=max_iterations)
 
 
 def _guess(operators: Operators, b: Array) -> Guess | None:
