@@ -24,7 +24,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.contact.contact import Contact, whole_grid
-from restitution.contact.influence import half_space, inverse_half_space, periodic_half_space
+from restitution.contact.influence import (
+    half_space,
+    inverse_half_space,
+    periodic_half_space,
+    single_half_space,
+)
 from restitution.contact.state import Array, State
 from restitution.errors import DomainError, NotConvergedError
 from restitution.numerics.box import NOWHERE, Box, bounding_box, shape_of, widen
@@ -36,7 +41,7 @@ from restitution.numerics.quadratic.minimise import (
     minimise_quadratic,
 )
 from restitution.numerics.quadratic.multilevel import Operators, solve_multilevel
-from restitution.numerics.quadratic.near_guess import solve_near_guess
+from restitution.numerics.quadratic.near_guess import SINGLE, solve_near_guess
 from restitution.numerics.read_only import freeze
 
 # Default tolerance on the violation of the contact conditions, relative to the largest overlap of
@@ -194,7 +199,7 @@ def elastic_pressure(
     b = _overlap(contact, indentation, box)
     scale = _scale_of(contact, indentation, b)
     minimum, window, convolutions = solve_near_guess(
-        operators_of(contact),
+        operators_of(contact, single_half_space if residual >= SINGLE else None),
         device.put(b),
         tolerance=residual * scale,
         max_iterations=MAX_ITERATIONS,

@@ -137,14 +137,15 @@ def half_space(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
 ) -> FreeConvolution:
     """Operator from pressure to displacement on a free half-space, on the current device."""
-    device = current()
+    return _half_space(shape, spacing, contact_modulus, single=False)
 
-    def kernel(i: NDArray[np.int64], j: NDArray[np.int64]) -> Array:
-        # FreeConvolution works with transposed arrays: the lags i along x are a row, and the lags j
-        # along y are a column. Therefore i and j are exchanged here, and so are the spacings.
-        return influence_coefficients(j, i, spacing[::-1], contact_modulus, device)
 
-    return FreeConvolution(kernel, shape, device)
+@_cached
+def single_half_space(
+    shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
+) -> FreeConvolution:
+    """`half_space` in single precision alone, which takes a third of the time to make."""
+    return _half_space(shape, spacing, contact_modulus, single=True)
 
 
 @_cached
@@ -202,6 +203,23 @@ def foundation_compliance(
     """Compliance (m/Pa) of the foundation: that of a wave twice as long as the longer edge."""
     q = math.pi / max(n * h for n, h in zip(shape, spacing, strict=True))
     return 2 / (contact_modulus * q)
+
+
+def _half_space(
+    shape: tuple[int, int],
+    spacing: tuple[float, float],
+    contact_modulus: float,
+    *,
+    single: bool,
+) -> FreeConvolution:
+    device = current()
+
+    def kernel(i: NDArray[np.int64], j: NDArray[np.int64]) -> Array:
+        # FreeConvolution works with transposed arrays: the lags i along x are a row, and the lags j
+        # along y are a column. Therefore i and j are exchanged here, and so are the spacings.
+        return influence_coefficients(j, i, spacing[::-1], contact_modulus, device)
+
+    return FreeConvolution(kernel, shape, device, single=single)
 
 
 def _unit_coefficients(lags: tuple[int, int], aspect: float, device: Device) -> Array:

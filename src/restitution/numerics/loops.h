@@ -7,6 +7,7 @@
 #include "diffusion.h"
 #include "multipoles.h"
 #include "relief.h"
+#include "growing_bound.h"
 #include "quadratic/fused_ops.h"
 #include "quadratic/grid_transfer.h"
 #include "quadratic/local_mean.h"
@@ -25,4 +26,5 @@ inline void define_loops(py::module_& module) {
     define_multipoles(module);
     define_diffusion(module);
     define_relief(module);
+    define_growing_bound(module);
 }

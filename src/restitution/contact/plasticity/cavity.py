@@ -28,7 +28,9 @@ from restitution.contact.plasticity.bound import ConstantBound
 from restitution.contact.state import Array, State
 from restitution.display import quantity
 from restitution.errors import CaseError
-from restitution.numerics.box import Box
+from restitution.numerics.box import Box, shape_of
+from restitution.numerics.expressions import dot
+from restitution.numerics.growing_bound import bound_of, growing_bound
 from restitution.numerics.read_only import freeze
 from restitution.theory import Hertz, yield_coefficient
 
@@ -40,7 +42,7 @@ FULL_CONSTRAINT = 2.8
 GROWTH, LARGEST = 0.65, 3.5
 # Three coefficients are larger for a ridge than for a round asperity, by these relative amounts:
 # c₀ (value at first yield), c₁ (growth with strain) and c₂ (upper limit).
-_RIDGE_ONSET, _RIDGE_GROWTH, _RIDGE_LARGEST = 0.11, 1.1, 0.25
+_OF_RIDGE = _RIDGE_ONSET, _RIDGE_GROWTH, _RIDGE_LARGEST = 0.11, 1.1, 0.25
 _DEPTH_FACTOR = 2.0  # the elastic pressure is computed at this multiple of the indentation
 
 # The bound is computed from an elastic solve. The tolerance of this solve is _RESIDUAL_FACTOR times
@@ -139,18 +141,14 @@ class ExpandingCavity(Plasticity):
 
         `ridge` is q, from 0 (round asperity) to 1 (ridge).
         """
-        Y, hardening = self.yield_strength, self.hardening_modulus(pair)
-        c_0 = self.first_yield_pressure(pair) / Y * (1 + _RIDGE_ONSET * ridge)
-        beyond = np.maximum(measure / (c_0 * Y), 1.0)
-        factor = np.minimum(
-            c_0 + GROWTH * (1 + _RIDGE_GROWTH * ridge) * np.log(beyond),
-            LARGEST * (1 + _RIDGE_LARGEST * ridge),
-        )
-        flow_stress: Array | float = Y
-        if hardening > 0:
-            strain = _TABOR * math.pi / 2 * (beyond - 1) * c_0 * Y / pair.contact_modulus
-            flow_stress = Y + hardening * strain
-        return factor * flow_stress
+        onset = self.first_yield_pressure(pair) * (1 + _RIDGE_ONSET * np.asarray(ridge))
+        growth = np.log(np.maximum(measure / onset, 1.0))
+        return bound_of(growth, np.asarray(ridge), self._constants(pair), _OF_RIDGE)
+
+    def _constants(self, pair: Pair) -> tuple[float, float, float, float]:
+        Y, onset = self.yield_strength, self.first_yield_pressure(pair)
+        strain = _TABOR * math.pi / 2 * onset / pair.contact_modulus  # at first yield
+        return onset, GROWTH * Y, LARGEST * Y, self.hardening_modulus(pair) * strain / Y
 
     def work(self, before: State | None, after: State) -> tuple[float, float]:
         """Plastic work (J) of a step to at most 1.42 times the depth, and its error (J).
@@ -159,21 +157,23 @@ class ExpandingCavity(Plasticity):
         indentation δ and the bound as linear in ln δ. The work per area of the displacement Δu is
         then Δu [b₁ + (b₂ − b₁) (δ₂/(δ₂ − δ₁) − 1/ln(δ₂/δ₁))].
         """
-        contact, box = after.contact, after.box
-        given, begun = after.plastic_displacement[box], np.asarray(contact.first_yield_pressure)
-        old, ratio = np.zeros(1, dtype=bool), math.inf
+        contact, box, ratio, on = after.contact, after.box, math.inf, 0.0
+        given, bound = after.plastic_displacement[box], _on(after.bound, box)
+        begun, old = _on(contact.first_yield_pressure, box), None
         if before is not None:
-            begun = _on(before.bound, box)
-            old = before.plastic_displacement[box] > 0
-            given = given - before.plastic_displacement[box]
+            begun, old = _on(before.bound, box), before.plastic_displacement[box]
+            given = given - old
             if before.indentation > 0:
                 ratio = after.indentation / before.indentation
+        whole = dot(given, begun)
+        new = dot(given, bound) - whole
+        if old is not None:
+            given *= old > 0
+            on = dot(given, bound) - dot(given, begun)
+            new -= on
         share = ratio / (ratio - 1) - 1 / math.log(ratio) if 1 < ratio < math.inf else 0.5
-        area = contact.grid.cell_area
-        whole = float(np.sum(given * begun)) * area
-        growth = given * (_on(after.bound, box) - begun)
-        on, new = (float(np.sum(growth, where=nodes)) * area for nodes in (old, ~old))
-        return whole + share * on + _NEW * new, _RULE_ERROR * abs(on) + _NEW_ERROR * abs(new)
+        work, error = share * on + _NEW * new, _RULE_ERROR * abs(on) + _NEW_ERROR * abs(new)
+        return (whole + work) * contact.grid.cell_area, error * contact.grid.cell_area
 
     def with_loading_work(self, state: State, start: State | None, load: Load) -> State:
         contact, indentation = state.contact, state.indentation
@@ -207,37 +207,35 @@ def yield_bound(contact: Contact, indentation: float, residual: float) -> tuple[
     bound = np.full(contact.grid.nodes, contact.first_yield_pressure)
     tolerance = min(_RESIDUAL_FACTOR * residual, _LARGEST_RESIDUAL)
     pressure, box, convolutions = elastic_pressure(contact, _DEPTH_FACTOR * indentation, tolerance)
-    nodes = np.flatnonzero(pressure)
-    measure = pressure.ravel()[nodes].astype(np.float64)
-    force = float(measure.sum()) * contact.grid.cell_area
-    measure *= 1 / math.sqrt(_DEPTH_FACTOR)
-    merged = _smooth_pressure(contact, box, force).ravel()[nodes] / measure
-    separate = np.maximum(1 - merged * np.sqrt(merged), 0)
-    apart = np.flatnonzero(separate)
-    at_apart, separate = nodes[apart], separate[apart]
-    depth_ratio = _depth_ratio(contact.crest_gap[box].ravel()[at_apart], indentation)
-    ridge = np.zeros_like(measure)
-    ridge[apart] = contact.elongation[box].ravel()[at_apart] * separate
-    measure[apart] *= depth_ratio**separate
-    model = cast(ExpandingCavity, contact.plasticity)
-    in_box = np.full(pressure.shape, contact.first_yield_pressure)
-    in_box.ravel()[nodes] = model.bound_at(contact.pair, measure, ridge)
-    bound[box] = in_box
+    if pressure.size == 0:
+        return freeze(bound), convolutions
+    force = float(pressure.sum(dtype=np.float64)) * contact.grid.cell_area
+    growing_bound(
+        pressure,
+        _smooth_squares(contact, box, force),
+        (contact.crest_gap[box], contact.elongation[box]),
+        (indentation, _DEPTH_FACTOR * indentation),
+        cast(ExpandingCavity, contact.plasticity)._constants(contact.pair),
+        _OF_RIDGE,
+        bound[box],
+    )
     return freeze(bound), convolutions
 
 
-def _depth_ratio(crest_gap: Array, indentation: float) -> Array:
-    """Depth correction 2(δ − h_c)/(2δ − h_c) of the asperity at each node; 0 where δ < h_c."""
-    depth = np.maximum(indentation - crest_gap, 0)
-    return _DEPTH_FACTOR * depth / (_DEPTH_FACTOR * indentation - crest_gap)
+def _smooth_squares(contact: Contact, box: Box, force: float) -> tuple[Array, Array]:
+    """Column and row whose sum is the square of the pressure between smooth bodies.
 
-
-def _smooth_pressure(contact: Contact, box: Box, force: float) -> Array:
-    """Pressure (Pa) on `box` between smooth bodies under a `force` (N)."""
-    smooth = Hertz(contact.pair.radius, contact.pair.contact_modulus)
+    It is negative where they do not touch. `force` (N) presses them together.
+    """
+    R, E = contact.pair.radius, contact.pair.contact_modulus
     x, y = contact.grid.x[box[0]] - contact.apex[0], contact.grid.y[box[1]] - contact.apex[1]
-    return smooth.pressure(np.sqrt(np.add.outer(x * x, y * y)), smooth.indentation(force))
+    scale = (2 * E / (math.pi * R)) ** 2
+    depth = Hertz(R, E).indentation(force)
+    return scale * (R * depth - x[:, None] ** 2), -scale * y[None, :] ** 2
 
 
 def _on(bound: Array | float, box: Box) -> Array:
-    return np.asarray(bound) if np.ndim(bound) == 0 else np.asarray(bound)[box]
+    if isinstance(bound, np.ndarray):
+        return bound[box]
+    shape = shape_of(box)
+    return np.broadcast_to(np.full(shape[1], bound), shape)  # rows, as compiled loops need them

@@ -89,16 +89,28 @@ class Convolution(_Spectral):
 
 
 class FreeConvolution(Convolution):
-    """Linear convolution: values outside the array are zero."""
+    """Linear convolution: values outside the array are zero.
 
-    def __init__(self, kernel: Kernel, shape: tuple[int, int], device: Device = CPU) -> None:
+    With `single`, only the spectrum of single precision is computed, and used for all products.
+    """
+
+    def __init__(
+        self,
+        kernel: Kernel,
+        shape: tuple[int, int],
+        device: Device = CPU,
+        *,
+        single: bool = False,
+    ) -> None:
         px, py = (2 * fast_size(n) for n in shape)
         super().__init__(shape, (px, py), device)
         # The kernel is transposed, as `Device.convolve` expects.
         lags = kernel(device.arange(px // 2 + 1)[None, :], device.arange(py // 2 + 1)[:, None])
         self.diagonal = float(lags[0, 0])
+        if single:
+            lags = lags.astype(np.float32)
         self._spectrum = device.even_spectrum(lags)
-        self._single_spectrum = self._spectrum.astype(np.float32)
+        self._single_spectrum = self._spectrum.astype(np.float32, copy=False)
 
 
 class PeriodicConvolution(Convolution):
