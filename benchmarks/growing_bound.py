@@ -60,10 +60,11 @@ repeats (smallest and largest in brackets).
 {rows}
 
 With the bound that grows, each depth of loading needs a second solve
-(`contact/plasticity/cavity.py`). This solve computes the elastic contact at twice the depth, in
-single precision. It ends when the root mean square of the residual is below 1.5e-4 of the largest
-overlap, and a last step without a convolution follows. These contacts have no adhesion, so the
-unloading work is the elastic energy. With either bound, unloading therefore takes no solve.
+(`contact/plasticity/cavity.py`): the elastic contact at twice the depth, in single precision, with
+wrapped convolutions (`numerics/convolution/operators.py`), to a residual (root mean square) of
+1.5e-4 of the largest overlap and one step more. Forces on these surfaces differ by at most 1.5e-4,
+and COR by at most 5e-5, from those of an elastic contact at 1e-8. These contacts have no adhesion,
+so the unloading work is the elastic energy, and unloading takes no solve.
 """
 
 

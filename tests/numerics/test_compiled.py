@@ -8,6 +8,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from restitution.numerics import kernels
 from restitution.numerics.expressions import diffuse, max_magnitude, multipoles
+from restitution.numerics.growing_bound import growing_bound
 from restitution.numerics.quadratic import fused_ops
 from restitution.numerics.quadratic.fused_ops import (
     as_rows,
@@ -249,6 +250,29 @@ def test_going_between_grids_is_that_of_the_expressions(dtype, shape, seed):
     for operation, *args in ((restrict, fine, coarse), (prolong, coarse, fine)):
         (_, (_, expected)), (_, (_, found)) = both(operation, *args)
         assert_allclose(found, expected, rtol=few, atol=few)
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@settings(deadline=None, max_examples=40)
+@given(shapes, seeds, st.sampled_from([0.0, 0.2]))
+def test_a_bound_that_grows_is_that_of_the_expressions(dtype, shape, seed, hardening):
+    rng = np.random.default_rng(seed)
+    pressure = np.maximum(rng.normal(size=shape), 0).astype(dtype)
+    smooth = rng.normal(size=(shape[0], 1)), rng.normal(size=(1, shape[1]))
+    gaps = 1.5 * rng.random(shape), rng.random(shape)  # some crests are deeper than δ
+    constants = 0.1, 0.04, 0.25, hardening
+    (_, (*_, expected)), (_, (*_, found)) = both(
+        growing_bound,
+        pressure,
+        smooth,
+        gaps,
+        (1.0, 2.0),
+        constants,
+        (0.11, 1.1, 0.25),
+        np.full(shape, 9.0),
+    )
+    assert_allclose(found, expected, rtol=1e-12)
+    assert_allclose(found[pressure == 0], 0.1, rtol=1e-15)
 
 
 @settings(deadline=None, max_examples=50)

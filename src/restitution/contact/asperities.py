@@ -26,7 +26,8 @@ def elongation_of(gap: Array, spacing: tuple[float, float]) -> Array:
         ridge. It is 0 at the outermost nodes of the grid, which a contact must not reach.
     """
     elongation = np.empty(gap.shape)
-    ridge_shape(gap, *map(float, spacing), elongation)
+    hx, hy = spacing
+    ridge_shape(gap, float(hx), float(hy), elongation)
     return freeze(elongation)
 
 

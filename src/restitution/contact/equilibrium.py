@@ -25,10 +25,10 @@ from numpy.typing import NDArray
 
 from restitution.contact.contact import Contact, whole_grid
 from restitution.contact.influence import (
+    approximate_half_space,
     half_space,
     inverse_half_space,
     periodic_half_space,
-    single_half_space,
 )
 from restitution.contact.state import Array, State
 from restitution.errors import DomainError, NotConvergedError
@@ -41,12 +41,13 @@ from restitution.numerics.quadratic.minimise import (
     minimise_quadratic,
 )
 from restitution.numerics.quadratic.multilevel import Operators, solve_multilevel
-from restitution.numerics.quadratic.near_guess import SINGLE, solve_near_guess
+from restitution.numerics.quadratic.near_guess import solve_near_guess
 from restitution.numerics.read_only import freeze
 
 # Default tolerance on the violation of the contact conditions, relative to the largest overlap of
 # the undeformed surfaces.
 RESIDUAL = 1e-8
+_ROUGH = 1e-4  # smallest residual of an estimate for which approximate operators are good enough
 MAX_ITERATIONS = 1000  # iterations after which a solve counts as not converged
 
 
@@ -199,7 +200,7 @@ def elastic_pressure(
     b = _overlap(contact, indentation, box)
     scale = _scale_of(contact, indentation, b)
     minimum, window, convolutions = solve_near_guess(
-        operators_of(contact, single_half_space if residual >= SINGLE else None),
+        operators_of(contact, approximate_half_space if residual >= _ROUGH else None),
         device.put(b),
         tolerance=residual * scale,
         max_iterations=MAX_ITERATIONS,

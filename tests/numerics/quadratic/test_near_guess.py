@@ -153,7 +153,7 @@ def test_a_large_tolerance_takes_single_precision_and_is_as_accurate(rough, monk
     expected = plain(b)
     errors = []
     for smallest, dtype in ((1e-5, np.float32), (np.inf, np.float64)):
-        monkeypatch.setattr(near_guess, "SINGLE", smallest)
+        monkeypatch.setattr(near_guess, "_SINGLE", smallest)
         found, p = placed(b, 1e-4)
         assert found.point.dtype == dtype
         errors.append(np.abs(p - expected).sum() / expected.sum())

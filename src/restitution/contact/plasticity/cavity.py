@@ -42,13 +42,13 @@ FULL_CONSTRAINT = 2.8
 GROWTH, LARGEST = 0.65, 3.5
 # Three coefficients are larger for a ridge than for a round asperity, by these relative amounts:
 # c₀ (value at first yield), c₁ (growth with strain) and c₂ (upper limit).
-_OF_RIDGE = _RIDGE_ONSET, _RIDGE_GROWTH, _RIDGE_LARGEST = 0.11, 1.1, 0.25
+_OF_RIDGE = 0.11, 1.1, 0.25
 _DEPTH_FACTOR = 2.0  # the elastic pressure is computed at this multiple of the indentation
 
 # The bound is computed from an elastic solve. The tolerance of this solve is _RESIDUAL_FACTOR times
-# the tolerance of the later solve under the bound, but at most _LARGEST_RESIDUAL. On five rough
-# surfaces of 512² nodes, tolerances of 1.5e-4 and 1e-8 gave values of COR that differ by at most
-# 7e-5 (tests/contact/test_cavity.py checks 1e-4).
+# the tolerance of the later solve under the bound, but at most _LARGEST_RESIDUAL. On the
+# surfaces of benchmarks/growing_bound.py, tolerances of 1.5e-4 and 1e-8 gave values of COR that
+# differ by at most 5e-5 (tests/contact/test_cavity.py checks 1e-4).
 _RESIDUAL_FACTOR, _LARGEST_RESIDUAL = 1.5e4, 1.5e-4
 _PEAK = 1.5  # largest pressure between elastic paraboloids divided by their mean pressure (Hertz)
 _TABOR = 0.2  # representative strain divided by a/R (contact radius a, radius R of the sphere)
@@ -141,7 +141,7 @@ class ExpandingCavity(Plasticity):
 
         `ridge` is q, from 0 (round asperity) to 1 (ridge).
         """
-        onset = self.first_yield_pressure(pair) * (1 + _RIDGE_ONSET * np.asarray(ridge))
+        onset = self.first_yield_pressure(pair) * (1 + _OF_RIDGE[0] * np.asarray(ridge))
         growth = np.log(np.maximum(measure / onset, 1.0))
         return bound_of(growth, np.asarray(ridge), self._constants(pair), _OF_RIDGE)
 

@@ -40,7 +40,7 @@ from restitution.numerics.quadratic.multilevel import (
 Guess = tuple[Array, Array]  # p and K p
 
 _COARSE_ACCURACY = 1e-3  # tolerance on coarser grids, as a fraction of the largest b
-SINGLE = 1e-5  # smallest tolerance, as a fraction of the largest b, for single precision
+_SINGLE = 1e-5  # smallest tolerance, as a fraction of the largest b, for single precision
 _PLACES = 12  # number of local means along each axis (see the module `local_mean`)
 _PASSES = 3  # Newton steps that restore the local means of the guess
 # Length of the last step, as a multiple of the preconditioned gradient. Any length from 0.3 to 0.8
@@ -60,7 +60,7 @@ def solve_near_guess(
     accurate than `gradient` and `residual` say. Return the result on the window, the window, and
     the number of products with K on the window.
     """
-    if tolerance >= SINGLE * float(b.max()):
+    if tolerance >= _SINGLE * float(b.max()):
         b = b.astype(np.float32)
     guess = _guess(operators, b) if min(b.shape) >= MIN_NODES_FOR_GUESS else None
     return _solve_around(guess, operators, b, 0, tolerance=tolerance, max_iterations=max_iterations)
@@ -134,7 +134,7 @@ def _solve_from(
         mean_violation=True,
     )
     p, g = minimum.point, minimum.gradient
-    r = (g * ((p > 0) | (g < 0))).astype(np.float32, copy=False)
+    r: Any = (g * ((p > 0) | (g < 0))).astype(np.float32, copy=False)
     step = precondition(r)
     step *= -_LAST_STEP
     step *= r != 0
