@@ -115,11 +115,9 @@ class FreeConvolution(Convolution):
         px, py = (2 * fast_size(n) for n in shape)
         super().__init__(shape, (px, py), device)
         # The kernel is transposed, as `Device.convolve` expects.
-        lags: Any = kernel(device.arange(px // 2 + 1)[None, :], device.arange(py // 2 + 1)[:, None])
+        lags = kernel(device.arange(px // 2 + 1)[None, :], device.arange(py // 2 + 1)[:, None])
         self.diagonal = float(lags[0, 0])
-        if single:
-            lags = lags.astype(np.float32)
-        self._spectrum = device.even_spectrum(lags)
+        self._spectrum = device.even_spectrum(lags.astype(np.float32) if single else lags)
         self._single_spectrum = self._spectrum.astype(np.float32, copy=False)
 
 
