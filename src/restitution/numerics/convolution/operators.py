@@ -81,7 +81,7 @@ class Convolution(_Spectral):
     """Convolution with a kernel K; `diagonal` is the response of a node to its own value."""
 
     diagonal: float
-    _spectrum: Array
+    _spectrum: NDArray[Any]
     _single_spectrum: NDArray[np.float32]
 
     @property

@@ -61,7 +61,7 @@ void local_sums(Rows<const T> r, Rows<const T> mask, Rows<double> sums, Rows<dou
                 const T down = along_x.to_next[i];
 #pragma omp simd
                 for (Index j = 0; j < r.length; ++j) {
-                    const T counts = mi[j] != 0 ? T(1) : T(0), value = mi[j] != 0 ? ri[j] : T(0);
+                    const T counts = mi[j] != 0 ? T(1) : T(0), value = counts * ri[j];
                     all[j] += (1 - down) * value;
                     next[j] += down * value;
                     here[j] += (1 - down) * counts;
