@@ -87,7 +87,8 @@ def test_a_step_is_that_of_the_expressions(point_type, single, kind, shape, seed
     (found, (its_d, *_)), (compiled, (compiled_d, *_)) = both(
         projected_direction, d, 0.3, z, 0.8, p, g, r, box
     )
-    assert_allclose(compiled_d, its_d, rtol=1e-6, atol=2e-7)
+    rounding = 1 if point_type == np.float64 else 4  # p + d and its end round differently
+    assert_allclose(compiled_d, its_d, rtol=rounding * 1e-7, atol=rounding * 2e-7)
     assert compiled[0] == approx(found[0], abs=1e-5)
     if point_type == np.float64:  # in single precision, rounding decides at a bound
         assert compiled[1] == found[1]
@@ -96,7 +97,7 @@ def test_a_step_is_that_of_the_expressions(point_type, single, kind, shape, seed
 
     (most, its), (its_most, compiled) = both(take_step, p, g, compiled_d, Kd, step, box, out)
     for which in (0, 1, -1):
-        assert_allclose(compiled[which], its[which], rtol=1e-6, atol=2e-6)
+        assert_allclose(compiled[which], its[which], rtol=rounding * 1e-7, atol=rounding * 1e-6)
     assert most == np.abs(its[-1]).max()
     assert its_most == np.abs(compiled[-1]).max()
 
