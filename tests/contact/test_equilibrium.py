@@ -12,8 +12,10 @@ from numpy.testing import assert_allclose, assert_array_equal
 from contact_keys import contact_of, load, models_of
 from restitution.contact.bodies import Body, Pair
 from restitution.contact.contact import Contact, smooth
+from restitution.contact.equilibrium import candidate_box
 from restitution.contact.loading import solve, step
 from restitution.contact.plasticity.bound import ConstantBound
+from restitution.numerics.box import bounding_box
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface
 from tolerance import approx
@@ -55,6 +57,14 @@ def test_it_is_the_dense_solution_on_the_whole_grid(rough_contact, dense, p_y, s
     assert state.stored_energy == approx(0.5 * (p * u).sum() * area, rel=1e-7)
     if p_y <= P_Y:
         assert state.plastic_work == approx(p_y * plastic.sum() * area, rel=1e-6)
+
+
+@pytest.mark.parametrize("nm", [1, 30, 1000])
+def test_the_candidate_box_holds_all_nodes_that_overlap(rough_contact, nm):
+    contact = rough_contact((16, 13), (0.8 * UM, 0.9 * UM))
+    box = candidate_box(contact, nm * NM)
+    assert box == bounding_box(contact.gap < nm * NM)
+    assert candidate_box(contact, 0.0) is None
 
 
 @settings(deadline=None, max_examples=25)

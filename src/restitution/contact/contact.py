@@ -197,6 +197,11 @@ class Contact:
         return freeze(gap)
 
     @cached_property
+    def smallest_gaps(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Smallest initial gap (m) along each row and along each column of nodes."""
+        return freeze(self.gap.min(axis=1)), freeze(self.gap.min(axis=0))
+
+    @cached_property
     def mean_offset(self) -> float:
         """Gap (m) at the apex between the smooth shapes of the bodies, at the mean heights."""
         at = tuple(n // 2 for n in self.grid.nodes)  # the origin

@@ -24,7 +24,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.contact.contact import Contact, whole_grid
-from restitution.contact.influence import half_space, inverse_half_space, periodic_half_space
+from restitution.contact.influence import (
+    approximate_half_space,
+    half_space,
+    inverse_half_space,
+    periodic_half_space,
+)
 from restitution.contact.state import Array, State
 from restitution.errors import DomainError, NotConvergedError
 from restitution.numerics.box import NOWHERE, Box, bounding_box, shape_of, widen
@@ -42,6 +47,7 @@ from restitution.numerics.read_only import freeze
 # Default tolerance on the violation of the contact conditions, relative to the largest overlap of
 # the undeformed surfaces.
 RESIDUAL = 1e-8
+_ROUGH = 1e-4  # smallest residual of an estimate for which approximate operators are good enough
 MAX_ITERATIONS = 1000  # iterations after which a solve counts as not converged
 
 
@@ -194,7 +200,7 @@ def elastic_pressure(
     b = _overlap(contact, indentation, box)
     scale = _scale_of(contact, indentation, b)
     minimum, window, convolutions = solve_near_guess(
-        operators_of(contact),
+        operators_of(contact, approximate_half_space if residual >= _ROUGH else None),
         device.put(b),
         tolerance=residual * scale,
         max_iterations=MAX_ITERATIONS,
@@ -287,6 +293,12 @@ def candidate_box(contact: Contact, indentation: float, history: State | None = 
 
     Without adhesion, no other node can come into contact.
     """
+    if history is None and not contact.periodic:
+        below = [np.flatnonzero(smallest < indentation) for smallest in contact.smallest_gaps]
+        if not all(part.size for part in below):
+            return None
+        rows, columns = (slice(int(part[0]), int(part[-1]) + 1) for part in below)
+        return rows, columns
     whole = region = whole_grid(contact)
     gap = contact.gap
     if history is not None:
@@ -294,10 +306,10 @@ def candidate_box(contact: Contact, indentation: float, history: State | None = 
             # On unloading, no new contact arises outside the box of `history`.
             region = widen(history.box, 2, contact.grid.nodes)
         gap = gap[region] + history.plastic_displacement[region]
-    below = gap < indentation
+    touching = gap < indentation
     if contact.periodic:
-        return whole if below.any() else None
-    return bounding_box(below, region)
+        return whole if touching.any() else None
+    return bounding_box(touching, region)
 
 
 def separated_state(contact: Contact, indentation: float, history: State | None = None) -> State:

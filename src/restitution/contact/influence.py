@@ -18,20 +18,25 @@ from numpy.typing import NDArray
 from restitution.numerics.convolution.cache import operator_cache
 from restitution.numerics.convolution.device import CPU, Device, current
 from restitution.numerics.convolution.operators import (
+    Convolution,
     FreeConvolution,
+    Kernel,
     PeriodicConvolution,
     SpectralFilter,
+    WrappedConvolution,
 )
 from restitution.numerics.expressions import multipoles
 
 Array = NDArray[np.float64]
-Operator = TypeVar("Operator", FreeConvolution, PeriodicConvolution, SpectralFilter)
+Operator = TypeVar("Operator", Convolution, FreeConvolution, PeriodicConvolution, SpectralFilter)
 Arguments = ParamSpec("Arguments")
 
 # Distance (in cell diagonals) beyond which the series of `far_displacement` is used. Beyond this
 # distance the relative error of the series is under 2e-12. The relative error of Love's formula
 # grows, due to cancellation, as the square of the distance.
 _FAR = 32.0
+# Shorter edge of the grid (nodes) from which wrapping saves time.
+_MIN_NODES_TO_WRAP = 160
 # Largest operator and largest block of coefficients that are cached, as fractions of the size of
 # the cache. Larger operators are not cached, because a few of them would fill the cache. With the
 # default size of the cache, operators of up to 1400² nodes are cached.
@@ -137,14 +142,18 @@ def half_space(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
 ) -> FreeConvolution:
     """Operator from pressure to displacement on a free half-space, on the current device."""
-    device = current()
+    return FreeConvolution(_kernel(spacing, contact_modulus), shape, current())
 
-    def kernel(i: NDArray[np.int64], j: NDArray[np.int64]) -> Array:
-        # FreeConvolution works with transposed arrays: the lags i along x are a row, and the lags j
-        # along y are a column. Therefore i and j are exchanged here, and so are the spacings.
-        return influence_coefficients(j, i, spacing[::-1], contact_modulus, device)
 
-    return FreeConvolution(kernel, shape, device)
+@_cached
+def approximate_half_space(
+    shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
+) -> Convolution:
+    """`half_space` in single precision and, on large grids, with the errors of wrapping."""
+    kernel = _kernel(spacing, contact_modulus)
+    if min(shape) < _MIN_NODES_TO_WRAP:
+        return FreeConvolution(kernel, shape, current(), single=True)
+    return WrappedConvolution(kernel, shape, current())
 
 
 @_cached
@@ -202,6 +211,17 @@ def foundation_compliance(
     """Compliance (m/Pa) of the foundation: that of a wave twice as long as the longer edge."""
     q = math.pi / max(n * h for n, h in zip(shape, spacing, strict=True))
     return 2 / (contact_modulus * q)
+
+
+def _kernel(spacing: tuple[float, float], contact_modulus: float) -> Kernel:
+    device = current()
+
+    def kernel(i: NDArray[np.int64], j: NDArray[np.int64]) -> Array:
+        # FreeConvolution works with transposed arrays: the lags i along x are a row, and the lags j
+        # along y are a column. Therefore i and j are exchanged here, and so are the spacings.
+        return influence_coefficients(j, i, spacing[::-1], contact_modulus, device)
+
+    return kernel
 
 
 def _unit_coefficients(lags: tuple[int, int], aspect: float, device: Device) -> Array:

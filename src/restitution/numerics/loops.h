@@ -7,6 +7,8 @@
 #include "diffusion.h"
 #include "multipoles.h"
 #include "newton.h"
+#include "relief.h"
+#include "growing_bound.h"
 #include "quadratic/fused_ops.h"
 #include "quadratic/grid_transfer.h"
 #include "quadratic/local_mean.h"
@@ -17,13 +19,15 @@ void define_for(py::module_& module) {
     define_newton<T>(module);
     define_fused_ops<T>(module);
     define_local_mean<T>(module);
+    define_grid_transfer<T>(module);
 }
 
 inline void define_loops(py::module_& module) {
     define_for<float>(module);
     define_for<double>(module);
-    define_grid_transfer(module);
     define_multipoles(module);
     define_lennard_jones(module);
     define_diffusion(module);
+    define_relief(module);
+    define_growing_bound(module);
 }

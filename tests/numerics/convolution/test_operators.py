@@ -14,6 +14,7 @@ from restitution.numerics.convolution.operators import (
     FreeConvolution,
     PeriodicConvolution,
     SpectralFilter,
+    WrappedConvolution,
     fast_size,
 )
 from restitution.numerics.quadratic.minimise import _ROUNDING
@@ -327,3 +328,46 @@ def test_a_periodic_convolution_multiplies_the_modes_of_the_whole_array(shape, s
     point = np.zeros(shape)
     point[0, 0] = 1.0
     assert K(point)[0, 0] == approx(K.diagonal, rel=1e-9)
+
+
+def patches(shape):
+    """Pressure on half of the nodes of an ellipse that touches the edges."""
+    x, y = (np.linspace(-1, 1, n) for n in shape)
+    ellipse = np.sqrt(np.maximum(1 - np.add.outer(x**2, y**2), 0))
+    return (ellipse * (np.random.default_rng(1).random(shape) < 0.5)).astype(np.float32)
+
+
+@pytest.mark.parametrize("shape", [(160, 160), (243, 178), (330, 421)])
+@pytest.mark.parametrize("spacing", [(1.0, 1.0), (1.0, 1.6)])
+def test_a_wrapped_convolution_is_nearly_the_linear_one(shape, spacing):
+    kernel, p = point_load(spacing), patches(shape)
+    expected = FreeConvolution(kernel, shape)(p)
+    K = WrappedConvolution(kernel, shape)
+    found = K.single_precision(p, out=np.empty_like(p))
+    error = (found - expected) / expected.max()
+    assert 1e-6 < np.sqrt((error**2).mean()) < 7e-4
+    assert np.abs(error).max() < 1e-2
+    assert K.count == 1
+    assert K.diagonal == approx(kernel(0, 0), rel=1e-12)
+    assert K.nbytes < 0.2 * FreeConvolution(kernel, shape).nbytes
+
+
+def test_copies_of_a_wrapped_convolution_share_no_workspace():
+    p = patches((180, 170))
+    K = WrappedConvolution(point_load((1.0, 1.0)), p.shape)
+    first = K(p)
+    other = K.with_own_workspace()
+    assert (K.count, other.count) == (1, 0)
+    assert other._far._lock is not K._far._lock
+    assert_array_equal(other(p), first)
+    assert other._far._workspace is not K._far._workspace
+
+
+def test_a_spectrum_of_single_precision_alone_is_as_accurate():
+    p = patches((90, 70))
+    both = FreeConvolution(point_load((1.0, 2.0)), p.shape)
+    alone = FreeConvolution(point_load((1.0, 2.0)), p.shape, single=True)
+    expected = both(p)
+    for found in (alone(p), alone.single_precision(p)):
+        assert_allclose(found, expected, atol=SINGLE * expected.max())
+    assert alone.nbytes < both.nbytes

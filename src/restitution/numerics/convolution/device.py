@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import Any, Literal, Protocol
 
 import ducc0
@@ -24,6 +24,7 @@ Array = NDArray[Any]
 DeviceName = Literal["cpu", "gpu", "auto"]
 
 
+@cache
 def is_fast(size: int) -> bool:
     """Whether `size` has only the prime factors 2, 3, 5 and 7; compiled transforms need this."""
     return pow(2 * 3 * 5 * 7, 64, size) == 0

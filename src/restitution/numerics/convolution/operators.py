@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from restitution.numerics.convolution.device import CPU, Device, is_fast
 from restitution.numerics.expressions import max_magnitude
+from restitution.numerics.quadratic.grid_transfer import coarsened, prolonged
 
 Array = NDArray[np.float64]
 # Function that returns the kernel at integer lags i and j, given as two arrays that are broadcast
@@ -32,9 +33,18 @@ Kernel = Callable[[NDArray[np.int64], NDArray[np.int64]], Array]
 Symbol = Callable[[Array, Array], Array]
 
 
+# Number of nodes by which the period of a `WrappedConvolution` is longer than its array. Across a
+# shorter distance, the other side of the periodic array would act on single nodes.
+_MARGIN = 24
+
+
 def fast_size(minimum: int) -> int:
     """Smallest size ≥ `minimum` that has only the prime factors 2, 3, 5 and 7."""
     return next(filter(is_fast, count(minimum)))
+
+
+def _even_fast_size(minimum: int) -> int:
+    return next(size for size in count(minimum + minimum % 2, 2) if is_fast(size))
 
 
 class _Spectral:
@@ -71,7 +81,7 @@ class Convolution(_Spectral):
     """Convolution with a kernel K; `diagonal` is the response of a node to its own value."""
 
     diagonal: float
-    _spectrum: Array
+    _spectrum: NDArray[Any]
     _single_spectrum: NDArray[np.float32]
 
     @property
@@ -89,16 +99,79 @@ class Convolution(_Spectral):
 
 
 class FreeConvolution(Convolution):
-    """Linear convolution: values outside the array are zero."""
+    """Linear convolution: values outside the array are zero.
 
-    def __init__(self, kernel: Kernel, shape: tuple[int, int], device: Device = CPU) -> None:
+    With `single`, only the spectrum of single precision is computed, and used for all products.
+    """
+
+    def __init__(
+        self,
+        kernel: Kernel,
+        shape: tuple[int, int],
+        device: Device = CPU,
+        *,
+        single: bool = False,
+    ) -> None:
         px, py = (2 * fast_size(n) for n in shape)
         super().__init__(shape, (px, py), device)
         # The kernel is transposed, as `Device.convolve` expects.
         lags = kernel(device.arange(px // 2 + 1)[None, :], device.arange(py // 2 + 1)[:, None])
         self.diagonal = float(lags[0, 0])
-        self._spectrum = device.even_spectrum(lags)
-        self._single_spectrum = self._spectrum.astype(np.float32)
+        self._spectrum = device.even_spectrum(lags.astype(np.float32) if single else lags)
+        self._single_spectrum = self._spectrum.astype(np.float32, copy=False)
+
+
+class WrappedConvolution(Convolution):
+    """Approximate linear convolution with a kernel that decreases slowly, in single precision.
+
+    The period is hardly longer than the array. It takes the kernel at the shorter of the two
+    distances between nodes of the periodic array. What this adds, at distances of more than half a
+    period, varies slowly, and is subtracted on cells four times as wide. Half as much work as
+    `FreeConvolution`; root mean square error 7e-4, at the outermost nodes 1e-2 of the largest value
+    (1/r on at least 160² nodes).
+    """
+
+    def __init__(self, kernel: Kernel, shape: tuple[int, int], device: Device = CPU) -> None:
+        px, py = (_even_fast_size(n + _MARGIN) for n in shape)
+        super().__init__(shape, (px, py), device)
+        along_x, along_y = (device.arange(n + 4) for n in shape)
+        lags = kernel(along_x[None, :], along_y[:, None])
+        near = lags[: py // 2 + 1, : px // 2 + 1]
+        self.diagonal = float(lags[0, 0])
+        self._spectrum = device.even_spectrum(near.astype(np.float32))
+        self._single_spectrum = self._spectrum
+
+        def added(i: NDArray[np.int64], j: NDArray[np.int64]) -> Array:
+            x, y = (np.minimum(4 * k.ravel(), n + 3) for k, n in zip((i, j), shape, strict=True))
+            wrapped_x, wrapped_y = np.minimum(x, px - x), np.minimum(y, py - y)
+            more: Array = np.subtract(lags[wrapped_y][:, wrapped_x], lags[y][:, x], order="C")
+            more *= -16.0  # nodes in a cell four times as wide
+            return more
+
+        wide = (-(-shape[0] // 4), -(-shape[1] // 4))
+        self._far = FreeConvolution(added, wide, device, single=True)
+
+    @property
+    def nbytes(self) -> int:
+        """Size of the spectra (bytes)."""
+        return int(self._spectrum.nbytes + self._far.nbytes)
+
+    def with_own_workspace(self) -> Self:
+        """Return a copy for another solve, with its own workspaces and with `count` set to 0."""
+        other = super().with_own_workspace()
+        other._far = self._far.with_own_workspace()
+        return other
+
+    def __call__(self, p: Array, out: Array | None = None) -> Array:
+        """Return K ∗ p, with the shape of `p`, in a new array or in `out`."""
+        result = self._convolve(p, self._spectrum, out, 1.0)
+        wider = coarsened(p)
+        widest = coarsened(wider)
+        far = self._far(widest, out=np.empty_like(widest))
+        result += prolonged(prolonged(far, wider), p)
+        return result
+
+    single_precision = __call__
 
 
 class PeriodicConvolution(Convolution):

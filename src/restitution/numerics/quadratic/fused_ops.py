@@ -1,8 +1,8 @@
 """Steps of the minimiser. A compiled loop fuses the array operations of each step into one pass.
 
 The symbols are those of `minimise`: p is the point, g the gradient at p, r the projected gradient,
-z the preconditioned gradient, d the step, and Kd the product of K and d. p, g and the bounds
-(numbers or arrays) are in double precision, the others in double or single precision.
+z the preconditioned gradient, d the step, and Kd the product of K and d. p, g, b and the bounds
+(numbers or arrays) have one precision, double or single, and the others one that is not higher.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ def as_rows(lower: Bound, upper: Bound, p: Array) -> Bounds:
     def rows(bound: Bound) -> Bound:
         if isinstance(bound, np.ndarray) or not loop_takes(p):
             return bound
-        return np.broadcast_to(np.full(p.shape[1], bound), p.shape)
+        return np.broadcast_to(np.full(p.shape[1], bound, p.dtype), p.shape)
 
     return rows(lower), rows(upper)
 
@@ -49,6 +49,12 @@ def projected_gradient(p: Array, g: Array, b: Array, bounds: Bounds, out: Array)
 def dot_products(z: Array, r: Array, r_old: Array) -> tuple[float, float]:
     """Return r·z and r_old·z."""
     return dot(r, z), dot(r_old, z)
+
+
+@use_loop
+def squares(r: Array) -> tuple[float, float]:
+    """Return r·r and the number of values that are not zero."""
+    return dot(r, r), float(np.count_nonzero(r))
 
 
 @use_loop

@@ -1,4 +1,4 @@
-// Restriction to a coarser grid and prolongation back to the finer grid, in double precision.
+// Restriction to a coarser grid and prolongation back to the finer grid.
 // grid_transfer.py has the equivalent array expressions.
 
 template <class Coarse, class Fine>
@@ -7,49 +7,53 @@ void expect_halves(const Coarse& coarse, const Fine& fine) {
         throw std::invalid_argument("the coarse array must have half as many rows and columns");
 }
 
-inline void restrict_grid(Rows<const double> fine, Rows<double> coarse) {
+template <class T>
+void restrict_grid(Rows<const T> fine, Rows<T> coarse) {
     expect_halves(coarse, fine);
     const auto some = [&](Index begin, Index end) {
         for (Index i = begin; i < end; ++i) {
-            const double *one = fine[2 * i], *two = fine[std::min(2 * i + 1, fine.count - 1)];
-            double* mean = coarse[i];
+            const T *one = fine[2 * i], *two = fine[std::min(2 * i + 1, fine.count - 1)];
+            T* mean = coarse[i];
             for (Index j = 0; j < fine.length / 2; ++j)
-                mean[j] = 0.25 * (one[2 * j] + two[2 * j] + one[2 * j + 1] + two[2 * j + 1]);
+                mean[j] = T(0.25) * (one[2 * j] + two[2 * j] + one[2 * j + 1] + two[2 * j + 1]);
             const Index last = fine.length - 1;
-            if (fine.length % 2) mean[last / 2] = 0.5 * (one[last] + two[last]);
+            if (fine.length % 2) mean[last / 2] = T(0.5) * (one[last] + two[last]);
         }
         return Sums{};
     };
     over_rows(some, coarse);
 }
 
-inline void prolong_grid(Rows<const double> coarse, Rows<double> fine) {
+template <class T>
+void prolong_grid(Rows<const T> coarse, Rows<T> fine) {
     expect_halves(coarse, fine);
+    constexpr T most = T(0.75), rest = T(0.25);
     const auto some = [&](Index begin, Index end) {
-        std::vector<double> padded(coarse.length + 2);
-        double* row = padded.data() + 1;
+        std::vector<T> padded(coarse.length + 2);
+        T* row = padded.data() + 1;
         for (Index i = begin; i < end; ++i) {
             const Index beside =
                 i % 2 ? std::min(i / 2 + 1, coarse.count - 1) : std::max(i / 2 - 1, Index(0));
-            const double *near = coarse[i / 2], *far = coarse[beside];
-            for (Index j = 0; j < coarse.length; ++j) row[j] = 0.75 * near[j] + 0.25 * far[j];
+            const T *near = coarse[i / 2], *far = coarse[beside];
+            for (Index j = 0; j < coarse.length; ++j) row[j] = most * near[j] + rest * far[j];
             row[-1] = row[0];
             row[coarse.length] = row[coarse.length - 1];
-            double* out = fine[i];
+            T* out = fine[i];
 #pragma omp simd
             for (Index j = 0; j < fine.length / 2; ++j) {
-                out[2 * j] = 0.75 * row[j] + 0.25 * row[j - 1];
-                out[2 * j + 1] = 0.75 * row[j] + 0.25 * row[j + 1];
+                out[2 * j] = most * row[j] + rest * row[j - 1];
+                out[2 * j + 1] = most * row[j] + rest * row[j + 1];
             }
             const Index last = fine.length / 2;
-            if (fine.length % 2) out[2 * last] = 0.75 * row[last] + 0.25 * row[last - 1];
+            if (fine.length % 2) out[2 * last] = most * row[last] + rest * row[last - 1];
         }
         return Sums{};
     };
     over_rows(some, fine);
 }
 
-inline void define_grid_transfer(py::module_& module) {
-    module.def("restrict", &restrict_grid);
-    module.def("prolong", &prolong_grid);
+template <class T>
+void define_grid_transfer(py::module_& module) {
+    module.def("restrict", &restrict_grid<T>);
+    module.def("prolong", &prolong_grid<T>);
 }

@@ -40,9 +40,7 @@ def nested(
     """
     if not may_coarsen(np.shape(fine[0]), periodic):
         return None
-    coarse = tuple(
-        field if isinstance(field, (int, float)) else _coarsened(field) for field in fine
-    )
+    coarse = tuple(field if isinstance(field, (int, float)) else coarsened(field) for field in fine)
     return refine(coarse, nested(refine, coarse, periodic=periodic, level=level + 1), fine, level)
 
 
@@ -52,7 +50,8 @@ def may_coarsen(shape: tuple[int, ...], periodic: bool) -> bool:
     return min(shape) >= _MIN_NODES_TO_COARSEN and (even or not periodic)
 
 
-def _coarsened(values: Array) -> Array:
+def coarsened(values: Array) -> Array:
+    """Means of `values` over 2 × 2 nodes, in a new array."""
     rows, columns = values.shape
     coarse = np.empty_like(values, shape=((rows + 1) // 2, (columns + 1) // 2), order="C")
     restrict(values, coarse)

@@ -36,7 +36,7 @@ struct PlaceSums {
 };
 
 template <class T>
-void local_sums(Rows<const T> r, Rows<double> sums, Rows<double> nodes) {
+void local_sums(Rows<const T> r, Rows<const T> mask, Rows<double> sums, Rows<double> nodes) {
     expect_one_shape(sums, nodes);
     const Index across = sums.length, places = sums.count * across;
     const Axis<T> along_x(r.count, sums.count), along_y(r.length, across);
@@ -57,13 +57,13 @@ void local_sums(Rows<const T> r, Rows<double> sums, Rows<double> nodes) {
         for (Index i = first; i < last;) {
             const Index k = along_x.part_of(i), end = std::min(last, along_x.begin[k + 1]);
             for (; i < end; ++i) {
-                const T* ri = r[i];
+                const T *ri = r[i], *mi = mask[i];
                 const T down = along_x.to_next[i];
 #pragma omp simd
                 for (Index j = 0; j < r.length; ++j) {
-                    const T counts = ri[j] != 0 ? T(1) : T(0);
-                    all[j] += (1 - down) * ri[j];
-                    next[j] += down * ri[j];
+                    const T counts = mi[j] != 0 ? T(1) : T(0), value = counts * ri[j];
+                    all[j] += (1 - down) * value;
+                    next[j] += down * value;
                     here[j] += (1 - down) * counts;
                     there[j] += down * counts;
                 }
@@ -76,7 +76,7 @@ void local_sums(Rows<const T> r, Rows<double> sums, Rows<double> nodes) {
         }
         return found;
     };
-    const PlaceSums found = over_rows(some, r);
+    const PlaceSums found = over_rows(some, r, mask);
     for (Index k = 0; k < places; ++k) {
         sums[k / across][k % across] = found.values[k];
         nodes[k / across][k % across] = found.values[places + k];
@@ -84,13 +84,13 @@ void local_sums(Rows<const T> r, Rows<double> sums, Rows<double> nodes) {
 }
 
 template <class T>
-void subtract_local_mean(Rows<const T> r, double share, Rows<const double> sums,
+void subtract_local_mean(Rows<const T> r, Rows<const T> mask, double share, Rows<const double> sums,
                          Rows<const double> nodes, Rows<T> out) {
     expect_one_shape(sums, nodes);
     const Axis<T> along_x(r.count, sums.count), along_y(r.length, sums.length);
     const auto some = [&](Index first, Index last) {
         for (Index i = first; i < last; ++i) {
-            const T *ri = r[i], *to_next = along_y.to_next.data();
+            const T *ri = r[i], *mi = mask[i], *to_next = along_y.to_next.data();
             T* result = out[i];
             const Index k = along_x.part_of(i);
             const double down = along_x.to_next[i];
@@ -103,15 +103,15 @@ void subtract_local_mean(Rows<const T> r, double share, Rows<const double> sums,
                 const T further = T(between(nodes, l + 1)) - count;
 #pragma omp simd
                 for (Index j = along_y.begin[l]; j < along_y.begin[l + 1]; ++j) {
-                    const T nearby = ri[j] != 0 ? count + further * to_next[j] : T(1);
+                    const T nearby = mi[j] != 0 ? count + further * to_next[j] : T(1);
                     const T lowered = ri[j] - (total + more * to_next[j]) / nearby;
-                    result[j] = ri[j] != 0 ? lowered : T(0);
+                    result[j] = mi[j] != 0 ? lowered : T(0);
                 }
             }
         }
         return Sums{};
     };
-    over_rows(some, r, out);
+    over_rows(some, r, mask, out);
 }
 
 template <class T>

@@ -13,36 +13,42 @@ Array = NDArray[Any]  # double or single precision
 
 
 @use_loop
-def local_sums(r: Array, sums: Array, nodes: Array) -> None:
-    """Sum r and count the nodes with r ≠ 0 around each place; write into `sums` and `nodes`.
+def local_sums(r: Array, mask: Array, sums: Array, nodes: Array) -> None:
+    """Sum r where `mask` ≠ 0 and count these nodes around each place, into `sums` and `nodes`.
 
     Along each axis there are at least two places. A node between two places contributes to both
     with linear weights (hat functions).
     """
     over_x, over_y = _hat_weights(r, sums)
-    sums[...] = over_x.T @ r @ over_y
-    nodes[...] = over_x.T @ (r != 0).astype(np.float64) @ over_y
+    counted = (mask != 0).astype(np.float64)
+    sums[...] = over_x.T @ (r * counted) @ over_y
+    nodes[...] = over_x.T @ counted @ over_y
 
 
 @use_loop
-def subtract_local_mean(r: Array, share: float, sums: Array, nodes: Array, out: Array) -> None:
-    """Write r minus `share` times its local mean into `out`, and zero where r = 0.
+def subtract_local_mean(
+    r: Array, mask: Array, share: float, sums: Array, nodes: Array, out: Array
+) -> None:
+    """Write r minus `share` times its local mean into `out`, and zero where `mask` = 0.
 
     The local mean is the ratio of `sums` and `nodes`, both interpolated between the places.
     """
     over_x, over_y = _hat_weights(r, sums)
     total, count = (over_x @ at_places @ over_y.T for at_places in (sums, nodes))
-    np.multiply(r - share * total / (count + (r == 0)), r != 0, out=out)
+    np.multiply(r - share * total / (count + (mask == 0)), mask != 0, out=out)
 
 
-def damp_local_mean(r: Array, share: float, places: int, out: Array) -> None:
-    """Write r minus `share` times its local mean into `out`, and zero where r = 0.
+def damp_local_mean(
+    r: Array, share: float, places: int, out: Array, mask: Array | None = None
+) -> None:
+    """Write r minus `share` times its local mean into `out`, and zero where `mask` = 0.
 
-    The lattice has `places` points along each axis. `out` may be `r`.
+    The lattice has `places` points along each axis. `out` may be `r`, which is the mask by default.
     """
+    mask = r if mask is None else mask
     sums, nodes = np.empty_like(r, dtype=np.float64, shape=(2, places, places))
-    local_sums(r, sums, nodes)
-    subtract_local_mean(r, share, sums, nodes, out)
+    local_sums(r, mask, sums, nodes)
+    subtract_local_mean(r, mask, share, sums, nodes, out)
 
 
 def _hat_weights(r: Array, places: Array) -> list[Array]:

@@ -22,6 +22,7 @@ from restitution.numerics.quadratic.fused_ops import (
     dot_products,
     projected_direction,
     projected_gradient,
+    squares,
     take_step,
     violates_bounds,
 )
@@ -126,7 +127,7 @@ def minimise_quadratic(
     bounds = as_rows(problem.lower, problem.upper, p)
     first = K_single if accept_estimated_gradient or K_start is not None else K
     if K_start is None:
-        K_start = first(p) if max_magnitude(p) > 0 else np.zeros_like(p)
+        K_start = first(p, out=np.empty_like(p)) if max_magnitude(p) > 0 else np.zeros_like(p)
     error = 0.0 if first is K else rounding * max_magnitude(K_start)
     d, r_old = (np.zeros_like(p, dtype=work_type) for _ in range(2))
     r, z, Kd = (np.empty_like(p, dtype=work_type) for _ in range(3))
@@ -188,4 +189,5 @@ def _largest(largest: float, r: Array) -> float:
 def _root_mean_square(largest: float, r: Array) -> float:
     if not largest > 0:
         return largest
-    return math.sqrt(dot_products(r, r, r)[0] / np.count_nonzero(r))
+    total, nodes = squares(r)
+    return math.sqrt(total / nodes)
