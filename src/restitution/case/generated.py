@@ -153,6 +153,11 @@ class GeneratedRoughness(Table):
         """Cell (m) that resolves the shortest wave in a patch."""
         return self.shortest_wave(grid, folder) / PER_WAVE
 
+    @property
+    def number(self) -> int:
+        """Number of the surface among those of its kind."""
+        return self.seed
+
     def of_patches(self) -> Self:
         """The table whose patches all surfaces of this kind share."""
         return self.model_copy(update={"seed": PATCH_SEED, "realisations": 1})

@@ -228,6 +228,11 @@ class MeasuredRoughness(Table):
         """The smaller edge (m) of a pixel."""
         return min(self._unmoved(folder).grid.spacing)
 
+    @property
+    def number(self) -> int:
+        """Number of the surface among those of its kind."""
+        return self.place if self.seed is None else self.seed
+
     def of_patches(self) -> Self:
         """The table whose patches all surfaces of this kind share."""
         seed = None if self.seed is None else PATCH_SEED

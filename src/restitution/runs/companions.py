@@ -283,8 +283,10 @@ def coarser_contact(contact: Contact) -> Contact:
     coarser = coarsen(contact.surface)
     if contact.surface.provenance.get("source") == "smooth":
         coarser = smooth(coarser.grid)
-    if not interface_of(contact).resolves_range(replace(contact, surface=coarser)):
-        coarser = replace(coarser, provenance={**coarser.provenance, COMPANION: True})
+    new = replace(contact, surface=coarser)
+    if interface_of(new).resolves_range(new):
+        return new
+    coarser = replace(coarser, provenance={**coarser.provenance, COMPANION: True})
     return replace(contact, surface=coarser)
 
 

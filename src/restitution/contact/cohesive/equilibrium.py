@@ -31,7 +31,7 @@ from restitution.numerics.read_only import freeze
 from restitution.numerics.truncated_newton import minimise_locally
 
 if TYPE_CHECKING:
-    from restitution.contact.cohesive.law import CohesiveLaw
+    from restitution.contact.cohesive.law import CohesiveLaw, NodeLaw
 
 # A solve includes all nodes at which the attraction matters. At these nodes the gap before elastic
 # deformation is below about _REACH z₀ + L, where L is `Adhesion.length`.
@@ -73,7 +73,7 @@ class CohesiveState(State):
     @property
     def box_touching(self) -> NDArray[np.bool_]:
         """Whether the gap of each node is below that of the largest attraction (bool)."""
-        return box_gap(self) < law_of(self.contact).gap_of_largest_traction
+        return np.asarray(box_gap(self) < nodes_of(self.contact, self.box).gap_of_largest_traction)
 
     @property
     def mean_gap(self) -> float:
@@ -89,6 +89,10 @@ def law_of(contact: Contact) -> CohesiveLaw:
     return cast("CohesiveLaw", contact.adhesion)
 
 
+def nodes_of(contact: Contact, box: Box) -> NodeLaw:
+    return law_of(contact).at_nodes(contact, box)
+
+
 class BoundedLaw:
     """The traction law of the nodes of a box, as a function of their elastic displacement u.
 
@@ -97,11 +101,14 @@ class BoundedLaw:
     finite if the iteration reaches negative gaps. The limit is reached at the gap `least` (m).
     """
 
-    def __init__(self, contact: Contact, base: Array, limit: Array | float) -> None:
+    def __init__(
+        self, contact: Contact, base: Array, limit: Array | float, box: Box | None = None
+    ) -> None:
         self.base = base
         self.yields = bool(np.all(np.isfinite(limit)))
         bound = np.asarray(limit if self.yields else contact.pair.contact_modulus, dtype=float)
-        self._law = law_of(contact)
+        self._law = law_of(contact) if box is None else nodes_of(contact, box)
+        self._scale = law_of(contact).equilibrium_separation
         self.least = self._law.gap_at(bound)
         self._slope = -bound
         self._stiff = 0.0 if self.yields else self._law.stiffness(self.least)
@@ -113,7 +120,7 @@ class BoundedLaw:
         energy, slope, stiff = self._law.potential(gap - below)
         energy += below * (self._slope + 0.5 * self._stiff * below)
         slope += self._stiff * below
-        stiff[below < 0] = self._stiff
+        np.copyto(stiff, self._stiff, where=below < 0)
         return energy, slope, stiff
 
     def secant(self, u: Array, p: Array, slope: Array, stiff: Array) -> Array:
@@ -122,15 +129,16 @@ class BoundedLaw:
         The repulsion is so steep that Newton steps along its tangent would be far too short or too
         long, but the pressures of a step are nearly right.
         """
-        gap, z0 = self.base + u, self._law.equilibrium_separation
-        at = np.flatnonzero((p > 0) | (gap < z0))
+        gap = self.base + u
+        at = np.flatnonzero((p > 0) | (gap < self._law.equilibrium_separation))
         limit = np.broadcast_to(-self._slope, p.shape).ravel()[at]
         wanted = np.maximum(p.ravel()[at], 0.0)
-        goal = self._law.gap_at(np.minimum(wanted, limit))
+        goal = self._law.among(at).gap_at(np.minimum(wanted, limit))
         if not self.yields:
-            goal -= np.maximum(wanted - limit, 0.0) / self._stiff
+            stiffest = np.broadcast_to(self._stiff, p.shape).ravel()[at]
+            goal -= np.maximum(wanted - limit, 0.0) / stiffest
         way = gap.ravel()[at] - goal
-        far = np.abs(way) > _TANGENT * z0
+        far = np.abs(way) > _TANGENT * self._scale
         chord = np.zeros_like(way)
         np.divide((p + slope).ravel()[at], way, out=chord, where=far)
         slopes: Array = stiff.copy()
@@ -172,7 +180,7 @@ def solve_cohesive(
     K = _operator(contact, box)
     before = np.zeros(contact.grid.nodes) if history is None else history.plastic_displacement
     upper = limit[box] if isinstance(limit, np.ndarray) else limit
-    law = BoundedLaw(contact, _base(contact, indentation, box, before), upper)
+    law = BoundedLaw(contact, _base(contact, indentation, box, before), upper, box)
     z0 = law_of(contact).equilibrium_separation
     solved = minimise_locally(
         K,
@@ -204,7 +212,7 @@ def solve_cohesive(
     gap = np.maximum(law.base + solved.u, law.least)
     area = contact.grid.cell_area
     far_force, far_energy = _far(contact, indentation, box)
-    energy = float(np.sum(law_of(contact).energy(gap))) * area
+    energy = float(np.sum(nodes_of(contact, box).energy(gap))) * area
     if not law.yields:
         # Below the gap `law.least`, the law of elastic bodies is continued linearly. Add the energy
         # of this continuation.
@@ -248,7 +256,7 @@ def rigid_start(contact: Contact, *, limit: Array | float, residual: float) -> C
 
 def rigid_pressure(contact: Contact, indentation: float, box: Box) -> Array:
     """Pressure (Pa) between rigid bodies, but zero below the gap of the largest attraction."""
-    law, gap = law_of(contact), _base(contact, indentation, box, None)
+    law, gap = nodes_of(contact, box), _base(contact, indentation, box, None)
     least = law.gap_of_largest_traction
     return np.where(gap > least, -law.traction(np.maximum(gap, least)), 0.0)
 
@@ -309,7 +317,7 @@ def is_unique(state: CohesiveState) -> bool:
     if contact.periodic:
         compliance = max(contact.grid.size) / (math.pi * contact.pair.contact_modulus)
         return compliance * law.largest_softening(state.smallest_gap) < _UNIQUE
-    softening = np.maximum(-law.stiffness(box_gap(state)), 0.0)
+    softening = np.maximum(-nodes_of(contact, state.box).stiffness(box_gap(state)), 0.0)
     K = _operator(contact, state.box)
     return float(K(softening).max()) < _UNIQUE
 

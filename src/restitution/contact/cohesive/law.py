@@ -7,9 +7,10 @@ from abc import abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import cast
+from typing import Protocol, cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 from restitution.arguments import typed
 from restitution.contact.bodies import Pair
@@ -29,6 +30,7 @@ from restitution.contact.models import (
 )
 from restitution.contact.state import Array, State
 from restitution.errors import CaseError
+from restitution.numerics.box import Box
 from restitution.numerics.quadrature import integrate_adaptively
 from restitution.theory import LennardJones
 
@@ -50,6 +52,28 @@ _SOFTEST = (2 / 15) ** (1 / 6)
 _FAR = 100.0  # gap, in units of z₀, beyond which a law without closed forms does not attract
 _SHARES = (*(0.5**k for k in range(1, 11)), *(-(2.0**k) for k in range(20)))
 _SAMPLES = 2000  # gaps at which the slope of such a law is sampled
+
+
+class NodeLaw(Protocol):
+    """A traction law at certain nodes; the values of a node are in arrays of their shape."""
+
+    @property
+    def gap_of_largest_traction(self) -> Array | float: ...
+
+    @property
+    def equilibrium_separation(self) -> Array | float: ...
+
+    def potential(self, gap: Array) -> tuple[Array, Array, Array]: ...
+
+    def energy(self, gap: Array) -> Array: ...
+
+    def traction(self, gap: Array) -> Array: ...
+
+    def stiffness(self, gap: Array) -> Array: ...
+
+    def gap_at(self, pressure: Array) -> Array: ...
+
+    def among(self, at: NDArray[np.intp]) -> NodeLaw: ...
 
 
 class CohesiveLaw(Adhesion):
@@ -83,6 +107,14 @@ class CohesiveLaw(Adhesion):
     def potential(self, gap: Array) -> tuple[Array, Array, Array]:
         """New arrays of energy, traction and stiffness."""
         return self.energy(gap), self.traction(gap), self.stiffness(gap)
+
+    def at_nodes(self, contact: Contact, box: Box) -> NodeLaw:
+        """The law at the nodes of `box`, by default the same at all."""
+        return self
+
+    def among(self, at: NDArray[np.intp]) -> NodeLaw:
+        """The law at the nodes with the numbers `at`, in one dimension."""
+        return self
 
     def gap_at(self, pressure: Array) -> Array:
         """Gap (m) at which the pressure (Pa, not negative) of the law has this value."""
@@ -175,7 +207,7 @@ class CohesiveLaw(Adhesion):
         return (work + lost - released) / state.stored_energy
 
     def node_stiffness(self, state: State) -> Array | None:
-        return self.stiffness(box_gap(state))
+        return self.at_nodes(state.contact, state.box).stiffness(box_gap(state))
 
     def zone_length(self, pair: Pair) -> float:
         """Length E*z₀²/w (m) of the cohesive zone at the edge of a contact."""
