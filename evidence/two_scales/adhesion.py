@@ -25,6 +25,7 @@ from restitution.contact.loading import solve
 from restitution.contact.models import COMPANION
 from restitution.contact.patch.law import PatchAttraction
 from restitution.contact.state import Array
+from restitution.errors import RestitutionError
 from restitution.numerics.grid import Grid
 from restitution.numerics.intervals import half_interval
 from restitution.surfaces import Surface, generate_surface
@@ -130,9 +131,7 @@ def row_of(seed: int) -> dict[str, object]:
     two = impact(coarse, work, start)
     end = time.process_time()
     coarser = two_scales(direct, 2 * factor)
-    coarser = replace(
-        coarser, surface=replace(coarser.surface, provenance={COMPANION: True})
-    )
+    coarser = replace(coarser, surface=replace(coarser.surface, provenance={COMPANION: True}))
     error = error_of(coarse, coarser, two, work, start)
     law = coarse.adhesion
     smooth = JKR(pair.radius, pair.contact_modulus, direct.adhesion.work_of_adhesion)
@@ -173,8 +172,12 @@ def main() -> None:
             print(*row_of(seed).values(), flush=True)
         return
     rows = list(csv.DictReader(TABLE.read_text().splitlines())) if TABLE.exists() else []
-    for seed in range(len(rows), CASES):
-        rows.append({key: str(value) for key, value in row_of(seed).items()})
+    for seed in sorted(set(range(CASES)) - {int(row["case"]) for row in rows}):
+        try:
+            rows.append({key: str(value) for key, value in row_of(seed).items()})
+        except RestitutionError as error:
+            print(seed, error, flush=True)
+            continue
         print(*rows[-1].values(), flush=True)
         with open(TABLE, "w", newline="") as file:
             writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")

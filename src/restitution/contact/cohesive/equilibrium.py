@@ -108,7 +108,8 @@ class BoundedLaw:
         self.yields = bool(np.all(np.isfinite(limit)))
         bound = np.asarray(limit if self.yields else contact.pair.contact_modulus, dtype=float)
         self._law = law_of(contact) if box is None else nodes_of(contact, box)
-        self._scale = law_of(contact).equilibrium_separation
+        self._z0 = law_of(contact).equilibrium_separation
+        self.steep = self._law.steep
         self.least = self._law.gap_at(bound)
         self._slope = -bound
         self._stiff = 0.0 if self.yields else self._law.stiffness(self.least)
@@ -129,16 +130,15 @@ class BoundedLaw:
         The repulsion is so steep that Newton steps along its tangent would be far too short or too
         long, but the pressures of a step are nearly right.
         """
-        gap = self.base + u
-        at = np.flatnonzero((p > 0) | (gap < self._law.equilibrium_separation))
+        gap, z0 = self.base + u, self._z0
+        at = np.flatnonzero((p > 0) | (gap < z0))
         limit = np.broadcast_to(-self._slope, p.shape).ravel()[at]
         wanted = np.maximum(p.ravel()[at], 0.0)
-        goal = self._law.among(at).gap_at(np.minimum(wanted, limit))
+        goal = self._law.gap_at(np.minimum(wanted, limit))
         if not self.yields:
-            stiffest = np.broadcast_to(self._stiff, p.shape).ravel()[at]
-            goal -= np.maximum(wanted - limit, 0.0) / stiffest
+            goal -= np.maximum(wanted - limit, 0.0) / self._stiff
         way = gap.ravel()[at] - goal
-        far = np.abs(way) > _TANGENT * self._scale
+        far = np.abs(way) > _TANGENT * z0
         chord = np.zeros_like(way)
         np.divide((p + slope).ravel()[at], way, out=chord, where=far)
         slopes: Array = stiff.copy()
@@ -190,7 +190,7 @@ def solve_cohesive(
         length=0.5 * z0,
         tolerance=max(_TOLERANCE * residual, _LEAST_TOLERANCE) * z0,
         zero_mean=contact.periodic,
-        secant=law.secant,
+        secant=law.secant if law.steep else None,
     )
     if not solved.converged:
         raise NotConvergedError(

@@ -10,7 +10,6 @@ from functools import cached_property
 from typing import Protocol, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.arguments import typed
 from restitution.contact.bodies import Pair
@@ -55,13 +54,16 @@ _SAMPLES = 2000  # gaps at which the slope of such a law is sampled
 
 
 class NodeLaw(Protocol):
-    """A traction law at certain nodes; the values of a node are in arrays of their shape."""
+    """A traction law at certain nodes; the values of a node are in arrays of their shape.
+
+    `steep` tells whether steps along the tangent of its repulsion are poor.
+    """
+
+    @property
+    def steep(self) -> bool: ...
 
     @property
     def gap_of_largest_traction(self) -> Array | float: ...
-
-    @property
-    def equilibrium_separation(self) -> Array | float: ...
 
     def potential(self, gap: Array) -> tuple[Array, Array, Array]: ...
 
@@ -72,8 +74,6 @@ class NodeLaw(Protocol):
     def stiffness(self, gap: Array) -> Array: ...
 
     def gap_at(self, pressure: Array) -> Array: ...
-
-    def among(self, at: NDArray[np.intp]) -> NodeLaw: ...
 
 
 class CohesiveLaw(Adhesion):
@@ -86,6 +86,7 @@ class CohesiveLaw(Adhesion):
 
     bytes_per_node = 1800.0  # up to 100 states are kept, with 16 bytes per node each
     follows_path = True
+    steep = True
 
     @abstractmethod
     def energy(self, gap: Array) -> Array:
@@ -110,10 +111,6 @@ class CohesiveLaw(Adhesion):
 
     def at_nodes(self, contact: Contact, box: Box) -> NodeLaw:
         """The law at the nodes of `box`, by default the same at all."""
-        return self
-
-    def among(self, at: NDArray[np.intp]) -> NodeLaw:
-        """The law at the nodes with the numbers `at`, in one dimension."""
         return self
 
     def gap_at(self, pressure: Array) -> Array:

@@ -25,6 +25,7 @@ from restitution.numerics.tabulated import Tabulated
 _HIGHEST, _OF_HARDNESS, _CLOSED, _BEYOND = 0.1, 0.97, 0.95, 3.0
 _ACCURACY = 4e-5  # of the steps: finer than for a force, because the table is interpolated
 _CELLS = 4096  # of the table
+_RIGID = 100  # points of the pressure of rigid bodies
 _FAR = 25.0  # gap at the end of the table beyond the highest asperity, in units of z₀
 
 
@@ -71,10 +72,12 @@ class AttractionCurve:
         p = -work.derivative()(inside)
         lost = PchipInterpolator(self.gap[::-1], self.lost[::-1])(inside)
         far = gap > self.gap[0]
-        p[far] = self.rigid(gap[far])
+        if far.any():
+            points = np.geomspace(self.gap[0], float(gap.max()), _RIGID)
+            p[far] = PchipInterpolator(points, self._rigid(points))(gap[far])
         return p, lost
 
-    def rigid(self, gap: Array) -> Array:
+    def _rigid(self, gap: Array) -> Array:
         """Nominal pressure (Pa) of rigid bodies at each `gap` (m)."""
         law, local = law_of(self.contact), self.contact.gap - self.contact.gap.mean()
         return np.array([-float(law.traction(local + g).mean()) for g in gap.tolist()])

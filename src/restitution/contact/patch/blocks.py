@@ -100,10 +100,6 @@ class BlockTables:
         shape = curves[0].blocks.shape[1:]
         return cls(first, step, middle, values, lever, stiff, (shape[0], shape[1]), len(curves))
 
-    @property
-    def last(self) -> Array:
-        return np.asarray(self.first + _CELLS * self.step)
-
     def row_of(self, grid: Grid, place: int) -> Index:
         """The row of each node of `grid`; `place` selects the part of the patches at its middle."""
         across = max(1, math.isqrt(self.patches))
@@ -120,26 +116,35 @@ class BlockTables:
         return np.asarray(patch * math.prod(self.shape) + inside)
 
     @cached_property
-    def slopes(self) -> Array:
-        """Derivative of `values` with respect to the number of a point."""
+    def cells(self) -> Array:
+        """Of each cell of each row: coefficients of 1, t, t² and t³, t from 0 to 1, and integral.
+
+        The integral, in units of `step`, is that from the first point to the cell.
+        """
         from scipy.interpolate import PchipInterpolator
 
         points = np.arange(_CELLS + 1)
         slopes: Array = PchipInterpolator(points, self.values, axis=1).derivative()(points)
         slopes[:, 0] = np.minimum(slopes[:, 0], -self.stiffest * self.step)
-        return slopes
+        low, high = self.values[:, :-1], self.values[:, 1:]
+        b, steep = slopes[:, :-1], slopes[:, 1:]
+        c, d = 3 * (high - low) - 2 * b - steep, b + steep - 2 * (high - low)
+        sums = np.cumsum(low + b / 2 + c / 3 + d / 4, axis=1)
+        before = np.concatenate([np.zeros((len(sums), 1)), sums[:, :-1]], axis=1)
+        return np.stack([low, b, c, d, before], axis=-1).reshape(-1, 5)
 
     @cached_property
-    def sums(self) -> Array:
-        """Integral from the first point, in units of `step`."""
-        v, s = self.values, self.slopes
-        cells = 0.5 * (v[:, 1:] + v[:, :-1]) + (s[:, :-1] - s[:, 1:]) / 12
-        return np.concatenate([np.zeros((len(v), 1)), np.cumsum(cells, axis=1)], axis=1)
+    def ends(self) -> Array:
+        """Of each row: slope (Pa) at the first point, last pressure (Pa), and whole integral."""
+        cells = self.cells.reshape(len(self.values), _CELLS, 5)
+        last = cells[:, -1]
+        whole = last[:, 4] + last[:, :4] @ (1 / np.arange(1.0, 5.0))
+        return np.stack([cells[:, 0, 1], self.values[:, -1], whole], axis=-1)
 
     @cached_property
-    def peak(self) -> Array:
-        """Gap (m) of the largest tension of each block."""
-        return np.asarray(self.first + self.step * self.values.argmin(axis=1))
+    def peak(self) -> Index:
+        """The point of the largest tension of each block."""
+        return np.asarray(self.values.argmin(axis=1))
 
     @cached_property
     def rest(self) -> Index:
@@ -207,11 +212,20 @@ def _steepness(curve: AttractionCurve) -> float:
 
 @dataclass(frozen=True, eq=False)
 class BlockLaw:
-    """The law at nodes: their `row` of `tables`, and how much farther (m) their block is away."""
+    """The law at nodes; arrays of their shape.
+
+    Each node has a `row` of `tables`, whose first point is at the gap `first` (m), with a point
+    after each `step` (m) up to `last` (m). Beyond, the gap counts from `middle` (m).
+    """
 
     tables: BlockTables
     row: Index
-    farther: Array
+    first: Array
+    step: Array
+    last: Array
+    middle: Array
+
+    steep = False
 
     @classmethod
     def on(cls, tables: BlockTables, contact: Contact, place: int) -> BlockLaw:
@@ -219,48 +233,42 @@ class BlockLaw:
         row = tables.row_of(contact.grid, place)
         lever = tables.lever[row]
         slopes = np.gradient(contact.gap)
-        return cls(tables, row, slopes[0] * lever[..., 0] + slopes[1] * lever[..., 1])
+        # The block attracts where its asperities are, not at its centre.
+        farther = slopes[0] * lever[..., 0] + slopes[1] * lever[..., 1]
+        first, step = tables.first[row] - farther, tables.step[row]
+        return cls(tables, row, first, step, first + _CELLS * step, tables.middle[row] - farther)
 
     def inside(self, box: Box) -> BlockLaw:
-        return BlockLaw(self.tables, self.row[box], self.farther[box])
-
-    def among(self, at: Index) -> BlockLaw:
-        """The law at the nodes with the numbers `at`, in one dimension."""
-        return BlockLaw(self.tables, self.row.ravel()[at], self.farther.ravel()[at])
+        arrays = (self.row, self.first, self.step, self.last, self.middle)
+        return BlockLaw(self.tables, *(array[box] for array in arrays))
 
     @property
     def gap_of_largest_traction(self) -> Array:
-        return np.asarray(self.tables.peak[self.row] - self.farther)
-
-    @cached_property
-    def equilibrium_separation(self) -> Array:
-        return self.gap_at(np.zeros(self.row.shape))
+        return self.first + self.step * self.tables.peak[self.row]
 
     def potential(self, gap: Array) -> tuple[Array, Array, Array]:
         """Energy (J/m²), traction (Pa) and its derivative (Pa/m) at the `gap` (m) of each node."""
-        of, k = self.tables, self.row
-        first, step, end = of.first[k], of.step[k], of.last[k]
-        gap = np.asarray(gap, dtype=float) + self.farther
-        at = np.minimum((gap - first) / step, float(_CELLS))
+        ends = self.tables.ends[self.row]
+        at = np.minimum((gap - self.first) / self.step, float(_CELLS))
         cell = np.clip(at.astype(np.intp), 0, _CELLS - 1)
         t = np.maximum(at, 0.0) - cell
-        a, b = of.values[k, cell], of.slopes[k, cell]
-        high, steep = of.values[k, cell + 1], of.slopes[k, cell + 1]
-        c, d = 3 * (high - a) - 2 * b - steep, b + steep - 2 * (high - a)
+        of = self.tables.cells[self.row * _CELLS + cell]
+        a, b, c, d, before = (of[..., k] for k in range(5))
         p, slope = a + t * (b + t * (c + t * d)), b + t * (2 * c + 3 * t * d)
-        integral = of.sums[k, cell] + t * (a + t * (b / 2 + t * (c / 3 + t * d / 4)))
-        beyond = np.minimum(at, 0.0)
-        integral += beyond * (p + 0.5 * slope * beyond)
-        p += slope * beyond
-        slope /= step
-        tail, middle = of.values[k, -1], of.middle[k]
-        rest = 0.5 * tail * (end - middle)
-        energy = (of.sums[k, -1] - integral) * step + rest
-        if (far := gap > end).any():
-            ratio = ((end - middle) / np.maximum(gap - middle, end - middle))[far]
-            energy[far] = rest[far] * ratio**2
+        integral = before + t * (a + t * (b / 2 + t * (c / 3 + t * d / 4)))
+        if (below := at < 0).any():
+            beyond = at[below]
+            integral[below] += beyond * (p + 0.5 * slope * np.minimum(at, 0.0))[below]
+            p[below] += slope[below] * beyond
+        slope /= self.step
+        tail, reach = ends[..., 1], self.last - self.middle
+        energy = (ends[..., 2] - integral) * self.step + 0.5 * tail * reach
+        if (far := gap > self.last).any():
+            away = (gap - self.middle)[far]
+            ratio = reach[far] / away
+            energy[far] = 0.5 * (tail * reach)[far] * ratio**2
             p[far] = tail[far] * ratio**3
-            slope[far] = -3 * p[far] / (gap - middle)[far]
+            slope[far] = -3 * p[far] / away
         return energy, -p, -slope
 
     def energy(self, gap: Array) -> Array:
@@ -274,15 +282,15 @@ class BlockLaw:
 
     def gap_at(self, pressure: Array) -> Array:
         """Gap (m) of each node at which its pressure (Pa, not negative) has this value."""
-        of, k = self.tables, self.row
+        values, k = self.tables.values, self.row
         wanted = np.broadcast_to(np.asarray(pressure, dtype=float), k.shape)
-        low, high = np.zeros(k.shape, dtype=np.intp), np.maximum(of.rest[k], 0) + 1
+        low, high = np.zeros(k.shape, dtype=np.intp), np.maximum(self.tables.rest[k], 0) + 1
         while (high - low).max(initial=1) > 1:
             middle = (low + high) // 2
-            over = of.values[k, middle] > wanted
+            over = values[k, middle] > wanted
             low, high = np.where(over, middle, low), np.where(over, high, middle)
-        here, there = of.values[k, low], of.values[k, low + 1]
+        here, there, most = values[k, low], values[k, low + 1], values[k, 0]
         share = (here - wanted) / np.where(here > there, here - there, 1.0)
-        beyond = (of.values[k, 0] - wanted) / -of.slopes[k, 0]
-        at = np.where(wanted > of.values[k, 0], beyond, low + np.clip(share, 0.0, 1.0))
-        return np.asarray(of.first[k] + of.step[k] * at - self.farther)
+        beyond = (most - wanted) / -self.tables.ends[k, 0]
+        at = np.where(wanted > most, beyond, low + np.clip(share, 0.0, 1.0))
+        return np.asarray(self.first + self.step * at)
