@@ -36,8 +36,9 @@ from restitution.theory import JKR
 TABLE = Path(__file__).with_suffix(".csv")
 CASES, NODES = 12, 320
 PER_WAVE, RESOLVED = 10, 0.29  # direct cells in the shortest wave, and in the cohesive zone
-# Cells of the contact in those of the direct solve; cells of the split, and edge of a patch in it.
-FACTORS, CELLS, EDGE = (8, 4, 2), 4, 4
+PATCH = 256  # direct cells along its edge
+# Cells of the contact in those of the direct solve, and cells of the contact in the split.
+FACTORS, CELLS = (8, 4, 2), 4
 SURFACES = 8
 MATERIALS = {"silica": (72e9, 0.17, 2200.0, 0.05), "lactose": (8e9, 0.3, 1500.0, 0.08)}
 
@@ -81,9 +82,9 @@ def outcome(collision: Collision, work: float) -> Array:
 def two_scales(direct: Contact, factor: int) -> Contact:
     """`direct` on cells `factor` times as large, with its waves below four cells in patches."""
     h = direct.grid.spacing[0]
-    wavelength, nodes = CELLS * factor * h, EDGE * CELLS * factor
-    tiles = 2 if 2 * nodes <= NODES else 1
-    long, patches = split(direct.surface, wavelength, min(nodes, NODES), tiles=tiles)
+    wavelength = CELLS * factor * h
+    # A single patch around the contact: the edges of four would meet in its middle.
+    long, patches = split(direct.surface, wavelength, PATCH, tiles=1)
     long = coarsen(long, factor)
     law = PatchAttraction(patches, wavelength, direct.adhesion)
     return replace(direct, surface=Surface(long.height, long.grid), adhesion=law)

@@ -25,7 +25,7 @@ from restitution.contact.contact import Contact, smooth
 from restitution.contact.interface import interface_of
 from restitution.contact.loading import solve
 from restitution.contact.models import COMPANION
-from restitution.contact.patch.law import PatchLaw, law_of_patches
+from restitution.contact.patch.law import PatchAttraction, PatchLaw, law_of_patches
 from restitution.contact.state import State
 from restitution.curve.columns import Array
 from restitution.curve.follow import Load, Unloading, follow
@@ -94,7 +94,8 @@ class ScaleCurves:
     """Curves that show the errors of a law of patches.
 
     `single` has the curve of the law of each patch, and `weaker` that of weaker bodies if their
-    bound grows. `edge` is that of a patch (m).
+    bound grows. `edge` is that of a patch (m); 0 if the asperities have their places in the contact,
+    so that other surfaces show the scatter of such a sample.
     """
 
     own: WorkCurve
@@ -114,7 +115,8 @@ class ScaleCurves:
         if coarse.plasticity.grows:
             weak = replace(coarse, plasticity=coarse.plasticity.scaled(1 - _OF_GROWTH))
             weaker = companions.curve(weak)
-        return cls(companions.own, tuple(single), weaker, how.nodes * how.cell)
+        edge = 0.0 if isinstance(law, PatchAttraction) else how.nodes * how.cell
+        return cls(companions.own, tuple(single), weaker, edge)
 
     def error(self, quantity_of: Callable[[WorkCurve], Array], area: Array | float) -> Array:
         """Error of a quantity due to the scatter of patches, and to a bound that grows.
@@ -200,8 +202,7 @@ class Companions:
         and density. The values of both bodies are set to the low, then to the high end; the larger
         change counts.
         """
-        coarse = self.coarse
-        here, mass = self.own.at(work), coarse.pair.mass
+        here, mass = self.curve(self.of_materials).at(work), self.coarse.pair.mass
         changes = []
         for ends in self.material_ends():
             low, high = (np.abs(self.curve(contact).at(work) - here) for contact in ends)
@@ -209,13 +210,22 @@ class Companions:
         masses = [case.pair().mass for case in self._ends]
         if mass is not None and any(m != mass for m in masses):
             moved = [self.own.at(work * m / mass) for m in masses if m is not None]
-            changes.append(np.max([np.abs(values - here) for values in moved], axis=0))
+            own = self.own.at(work)
+            changes.append(np.max([np.abs(values - own) for values in moved], axis=0))
         return changes
 
     def material_ends(self) -> list[tuple[Contact, Contact]]:
         """Pairs of contacts with one kind of library value at either end of its spread."""
         ends = (self.stiffness_ends, self.strength_ends, self.adhesion_ends)
-        return [pair for pair in ends if any(contact != self.coarse for contact in pair)]
+        return [pair for pair in ends if any(contact != self.of_materials for contact in pair)]
+
+    @cached_property
+    def of_materials(self) -> Contact:
+        """`coarse`, with which those with other materials are compared; it has a single patch."""
+        law = self.coarse.adhesion
+        if not isinstance(law, PatchAttraction):
+            return self.coarse
+        return replace(self.coarse, adhesion=replace(law, patches=law.patches[:1]))
 
     @cached_property
     def stiffness_ends(self) -> tuple[Contact, Contact]:
@@ -229,20 +239,21 @@ class Companions:
 
     @cached_property
     def adhesion_ends(self) -> tuple[Contact, Contact]:
-        known, adhesion = self.case.library_adhesion(), self.coarse.adhesion
+        known, adhesion = self.case.library_adhesion(), self.of_materials.adhesion
         if known is None or adhesion is None:
-            return self.coarse, self.coarse
+            return self.of_materials, self.of_materials
         low, high = (
-            replace(self.coarse, adhesion=adhesion.with_work_of_adhesion(w))
+            replace(self.of_materials, adhesion=adhesion.with_work_of_adhesion(w))
             for w in (known.low, known.high)
         )
         return low, high
 
     def with_modulus_of(self, case: Case) -> Contact:
-        return replace(self.coarse, pair=_with_modulus_of(self.coarse.pair, case.pair()))
+        pair = _with_modulus_of(self.coarse.pair, case.pair())
+        return replace(self.of_materials, pair=pair)
 
     def with_yield_of(self, case: Case) -> Contact:
-        return replace(self.coarse, **_yielding(case).arguments())
+        return replace(self.of_materials, **_yielding(case).arguments())
 
     def curve(self, contact: Contact) -> WorkCurve:
         """The curve of `contact`, computed once; `contact` is `coarse` with other materials."""
