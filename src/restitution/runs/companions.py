@@ -94,8 +94,8 @@ class ScaleCurves:
     """Curves that show the errors of a law of patches.
 
     `single` has the curve of the law of each patch, and `weaker` that of weaker bodies if their
-    bound grows. `edge` is that of a patch (m); 0 if the asperities have their places in the contact,
-    so that other surfaces show the scatter of such a sample.
+    bound grows. `edge` is that of a patch (m); 0 if asperities have their places in the contact, so
+    that other surfaces show the scatter of such a sample.
     """
 
     own: WorkCurve

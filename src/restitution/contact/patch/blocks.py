@@ -31,6 +31,7 @@ Shape = tuple[int, int]
 
 _CELLS = 256  # of the table of a block
 _FAR = 10.0  # end of this table beyond the highest node of its patch, in units of z₀
+_NEWTON = 4  # steps to the gap at a pressure, within a cell of the table
 _TILES = 3  # along each edge: periods of the pressure of blocks on the grid of the contact
 _BEYOND = 24  # rigid states between the first solved state and this end
 
@@ -162,7 +163,7 @@ def _rows(
     z0, patch = law.equilibrium_separation, contact.surface
     gap = np.array(
         [
-            g + _displacement(p, cell, contact.pair.contact_modulus)
+            g + displacement_of(p, cell, contact.pair.contact_modulus)
             for g, p in zip(curve.gap, curve.blocks, strict=True)
         ]
     )
@@ -187,7 +188,7 @@ def _rows(
     return first, (end - first) / _CELLS, middle, values, lever
 
 
-def _displacement(pressure: Array, cell: tuple[float, float], contact_modulus: float) -> Array:
+def displacement_of(pressure: Array, cell: tuple[float, float], contact_modulus: float) -> Array:
     """Displacement (m) that the grid of the contact adds under the pressures of the blocks."""
     nx, ny = pressure.shape
     tiled = np.tile(pressure - pressure.mean(), (_TILES, _TILES))
@@ -235,6 +236,11 @@ class BlockLaw:
         slopes = np.gradient(contact.gap)
         # The block attracts where its asperities are, not at its centre.
         farther = slopes[0] * lever[..., 0] + slopes[1] * lever[..., 1]
+        return cls.of_rows(tables, row, farther)
+
+    @classmethod
+    def of_rows(cls, tables: BlockTables, row: Index, farther: Array | float = 0.0) -> BlockLaw:
+        """The law of blocks that are `farther` (m) away than their nodes."""
         first, step = tables.first[row] - farther, tables.step[row]
         return cls(tables, row, first, step, first + _CELLS * step, tables.middle[row] - farther)
 
@@ -293,4 +299,9 @@ class BlockLaw:
         share = (here - wanted) / np.where(here > there, here - there, 1.0)
         beyond = (most - wanted) / -self.tables.ends[k, 0]
         at = np.where(wanted > most, beyond, low + np.clip(share, 0.0, 1.0))
+        least = np.where(wanted > most, -np.inf, low)
+        for _ in range(_NEWTON):
+            _, tension, stiff = self.potential(self.first + self.step * at)
+            way = (-tension - wanted) / (np.maximum(stiff, 1e-300) * self.step)
+            at = np.clip(at + way, np.minimum(least, at), np.maximum(low + 1, at))
         return np.asarray(self.first + self.step * at)

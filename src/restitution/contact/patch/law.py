@@ -11,19 +11,20 @@ import numpy as np
 
 from restitution.arguments import typed
 from restitution.contact.bodies import Pair
-from restitution.contact.checks.findings import Finding
+from restitution.contact.checks.findings import Finding, PatchRangeUnresolved
 from restitution.contact.checks.resolution import radius_of_asperities
 from restitution.contact.cohesive.equilibrium import box_gap
 from restitution.contact.cohesive.law import COARSEST, Cohesive, CohesiveLaw, NodeLaw
 from restitution.contact.contact import Contact
 from restitution.contact.interface import NoAttraction
-from restitution.contact.models import Plasticity, Separation
+from restitution.contact.models import COMPANION, Plasticity, Separation
 from restitution.contact.patch.attraction import AttractionCurve, AttractionTable
 from restitution.contact.patch.blocks import BlockLaw, BlockTables, Shape, shape_in
 from restitution.contact.patch.equilibrium import PatchState, solve_with_patches
 from restitution.contact.patch.repulsion import PatchCurve, RepulsionTable
 from restitution.contact.plasticity.bound import Elastic
 from restitution.contact.state import Array, State
+from restitution.errors import CaseError
 from restitution.numerics.box import Box
 from restitution.numerics.read_only import freeze
 from restitution.surfaces import Surface, rms_slope
@@ -192,7 +193,17 @@ class PatchAttraction(CohesiveLaw):
             AttractionCurve.is_known(self._contact(patch), self._shape(patch))
             for patch in self.patches
         )
-        return super().grid_finding(contact) if known else None
+        if not known or self.resolves_range(contact):
+            return None
+        return self._too_coarse(contact)
+
+    def require_fine_grid(self, contact: Contact) -> None:
+        if not self.resolves_range(contact) and not contact.surface.provenance.get(COMPANION):
+            raise CaseError(self._too_coarse(contact).text())
+
+    def _too_coarse(self, contact: Contact) -> PatchRangeUnresolved:
+        needed = self.coarsest_spacing(contact.pair)
+        return PatchRangeUnresolved(max(contact.grid.spacing), needed)
 
     @cached_property
     def table(self) -> AttractionTable:
