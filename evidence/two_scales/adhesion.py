@@ -139,7 +139,8 @@ def row_of(seed: int) -> dict[str, object]:
     radius = math.sqrt(pair.radius * law.length(pair) + 2 * pair.radius * law.reach)
     longest = min(rolloff, law.wavelength)
     mass = pair.mass or math.nan
-    sticks = [math.sqrt(2 * max(v, 0.0) / mass) for v in (exact[1], two[1], two[1] + error[1])]
+    losses = exact[1], two[1], two[1] + error[1], two[1] - error[1]
+    sticks = [math.sqrt(2 * max(lost, 0.0) / mass) for lost in losses]
     return {
         "case": seed,
         "material": name,
@@ -156,7 +157,7 @@ def row_of(seed: int) -> dict[str, object]:
         "error_nN": f"{1e9 * error[0]:.3g}",
         "direct_sticking_mm_s": f"{1e3 * sticks[0]:.3g}",
         "patch_sticking_mm_s": f"{1e3 * sticks[1]:.3g}",
-        "error_sticking_mm_s": f"{1e3 * (sticks[2] - sticks[1]):.3g}",
+        "error_sticking_mm_s": f"{1e3 * max(sticks[2] - sticks[1], sticks[1] - sticks[3]):.3g}",
         "direct_cor": f"{exact[2]:.4f}",
         "patch_cor": f"{two[2]:.4f}",
         "error_cor": f"{error[2]:.4f}",

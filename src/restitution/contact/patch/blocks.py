@@ -31,7 +31,7 @@ Shape = tuple[int, int]
 
 _CELLS = 256  # of the table of a block
 _FAR = 10.0  # end of this table beyond the highest node of its patch, in units of z₀
-_NEWTON = 4  # steps to the gap at a pressure, within a cell of the table
+_NEWTON, _SOFT = 4, 1e-6  # steps to the gap at a pressure; least slope there, in `stiffest`
 _TILES = 3  # along each edge: periods of the pressure of blocks on the grid of the contact
 _BEYOND = 24  # rigid states between the first solved state and this end
 
@@ -245,8 +245,10 @@ class BlockLaw:
         return cls(tables, row, first, step, first + _CELLS * step, tables.middle[row] - farther)
 
     def inside(self, box: Box) -> BlockLaw:
-        arrays = (self.row, self.first, self.step, self.last, self.middle)
-        return BlockLaw(self.tables, *(array[box] for array in arrays))
+        first, step, last, middle = (
+            a[box] for a in (self.first, self.step, self.last, self.middle)
+        )
+        return BlockLaw(self.tables, self.row[box], first, step, last, middle)
 
     @property
     def gap_of_largest_traction(self) -> Array:
@@ -302,6 +304,8 @@ class BlockLaw:
         least = np.where(wanted > most, -np.inf, low)
         for _ in range(_NEWTON):
             _, tension, stiff = self.potential(self.first + self.step * at)
-            way = (-tension - wanted) / (np.maximum(stiff, 1e-300) * self.step)
+            way = (-tension - wanted) / (
+                np.maximum(stiff, _SOFT * self.tables.stiffest) * self.step
+            )
             at = np.clip(at + way, np.minimum(least, at), np.maximum(low + 1, at))
         return np.asarray(self.first + self.step * at)
