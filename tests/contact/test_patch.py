@@ -11,9 +11,17 @@ from restitution.contact.cohesive.law import Cohesive
 from restitution.contact.loading import step
 from restitution.contact.patch import repulsion, stored
 from restitution.contact.patch.attraction import AttractionTable
+from restitution.contact.patch.blocks import (
+    BlockLaw,
+    BlockTables,
+    block_means,
+    displacement_of,
+    levers,
+)
 from restitution.contact.patch.growth import PatchBounds
 from restitution.contact.patch.law import PatchAttraction, PatchRepulsion, flat
 from restitution.contact.patch.repulsion import PatchCurve, RepulsionTable
+from restitution.errors import CaseError
 from restitution.surfaces.refine import coarsen
 from restitution.surfaces.split import split
 from tolerance import approx
@@ -239,3 +247,61 @@ def test_patches_are_averaged_at_equal_gaps():
     )
     one, two = AttractionTable.of([curve]), AttractionTable.of([curve, curve])
     np.testing.assert_allclose(one.pressure.values, two.pressure.values, rtol=1e-12)
+
+
+def test_blocks_have_the_mean_and_the_places_of_their_nodes():
+    values = np.random.default_rng(0).random((30, 20))
+    means = block_means(values, (6, 5))
+    assert means.mean() == approx(values.mean(), rel=1e-12)
+    assert means[1, 2] == approx(values[3:8, 6:10].mean(), rel=1e-12)
+    peak = np.zeros((30, 20))
+    peak[7, 8] = 1.0
+    patch = rs.Surface(peak, rs.Grid((30, 20), (1e-9, 1e-9)))
+    x, y = levers(patch, (6, 5), peak)
+    assert (x[1, 2], y[1, 2]) == approx((0.4, 0.0), abs=1e-12)
+
+
+@pytest.fixture(scope="module")
+def node_law():
+    contact = adhesive(0.3e-9, 14, 4e-9)
+    return contact, contact.adhesion.at_nodes(contact, (slice(2, 12), slice(3, 11)))
+
+
+def test_the_attraction_of_a_block_is_the_derivative_of_its_energy(node_law):
+    _, law = node_law
+    d = 1e-14
+    for g in np.linspace(-1e-9, 12e-9, 60):
+        gap = np.full((10, 8), g)
+        energy, traction, stiffness = law.potential(gap)
+        ahead = law.potential(gap + d)
+        np.testing.assert_allclose((ahead[0] - energy) / d, traction, rtol=0.02, atol=1e5)
+        np.testing.assert_allclose((ahead[1] - traction) / d, stiffness, rtol=0.05, atol=1e15)
+    pressure = np.full((10, 8), 1e9)
+    np.testing.assert_allclose(-law.traction(law.gap_at(pressure)), pressure, rtol=1e-3)
+
+
+def test_a_flat_contact_of_blocks_is_the_patch(node_law):
+    """All blocks at the gaps that the grid of the contact gives them under their pressures."""
+    contact, _ = node_law
+    curve = contact.adhesion.curve(contact.adhesion.patches[0])
+    tables = BlockTables.of([curve], contact.grid.spacing)
+    k = int(curve.pressure.argmin())
+    p = curve.blocks[k]
+    gap = curve.gap[k] + displacement_of(p, contact.grid.spacing, FINE_PAIR.contact_modulus)
+    law = BlockLaw.of_rows(tables, np.arange(p.size).reshape(p.shape))
+    np.testing.assert_allclose(-law.traction(gap), p, atol=0.01 * np.abs(p).max())
+
+
+def test_other_places_of_a_patch_have_other_pull_off_forces():
+    contact = adhesive(0.5e-9, 56, 4e-9)
+    other = replace(contact, adhesion=replace(contact.adhesion, place=1))
+    assert other.adhesion.table is contact.adhesion.table
+    forces = [rs.collide(rs.solve(c, 1e-9)).pull_off_force for c in (contact, other)]
+    assert forces[1] != approx(forces[0], rel=1e-3)
+    assert forces[1] == approx(forces[0], rel=0.5)
+
+
+def test_cells_too_coarse_for_the_patches_name_the_spacing():
+    contact = adhesive(0.1e-9, 24, 20e-9)
+    with pytest.raises(CaseError, match=r"set grid\.spacing to [\d.]+ nm or less"):
+        rs.solve(contact, 1e-9)

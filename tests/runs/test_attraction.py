@@ -138,6 +138,8 @@ def test_the_mean_of_surfaces_has_their_interval():
 
 def test_errors_come_from_grid_surfaces_and_materials():
     class Fake:
+        of_materials = "own"
+
         class case:  # noqa: N801
             roughness = (1,)
 
@@ -156,7 +158,7 @@ def test_errors_come_from_grid_surfaces_and_materials():
             return [("low", "high")]
 
         def curve(self, end):
-            force = {"low": 1.7, "high": 2.1}[end]
+            force = {"own": 2.0, "low": 1.7, "high": 2.1}[end]
             return WorkCurve(np.array([1.0]), np.array([1.0]), np.array([force]))
 
     work = np.array([3.0])

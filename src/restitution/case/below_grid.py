@@ -243,7 +243,8 @@ def split_surface(case: CaseTables, folder: Path, surface: Surface, how: Splitti
         "patch_rms_m": float(np.sqrt(np.mean([patch.height.var() for patch in patches]))),
         "patch_slope": float(np.sqrt(np.mean([rms_slope(patch) ** 2 for patch in patches]))),
     }
-    return SplitSurface(long.height, surface.grid, told, patches, how.wavelength)
+    place = sum(part.number for part in case.roughness)
+    return SplitSurface(long.height, surface.grid, told, patches, how.wavelength, place)
 
 
 @lru_cache(maxsize=8)

@@ -87,7 +87,8 @@ class Case(CaseTables):
         w, z0 = self.interface.adhesive_energy, self.interface.equilibrium_separation
         if w == 0:
             return PatchRepulsion(surface.patches, surface.wavelength)
-        return PatchAttraction(surface.patches, surface.wavelength, Cohesive(w, z0))
+        law = Cohesive(w, z0)
+        return PatchAttraction(surface.patches, surface.wavelength, law, place=surface.place)
 
     def adhesion_on(self, grid: Grid) -> AdhesionModel | None:
         """The model of adhesion on `grid`; None without adhesion."""

@@ -157,6 +157,11 @@ class GeneratedRoughness(Table):
         """Rms height (m)."""
         return self.rms
 
+    @property
+    def number(self) -> int:
+        """Number of the surface among those of its kind."""
+        return self.seed
+
     def of_patches(self) -> Self:
         """The table whose patches all surfaces of this kind share."""
         return self.model_copy(update={"seed": PATCH_SEED, "realisations": 1})

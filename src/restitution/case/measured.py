@@ -232,6 +232,11 @@ class MeasuredRoughness(Table):
         """Rms height (m) of the whole scan."""
         return float(self._unmoved(folder).height.std())
 
+    @property
+    def number(self) -> int:
+        """Number of the surface among those of its kind."""
+        return self.place if self.seed is None else self.seed
+
     def of_patches(self) -> Self:
         """The table whose patches all surfaces of this kind share."""
         seed = None if self.seed is None else PATCH_SEED

@@ -127,9 +127,10 @@ def curve_errors(
         errors.append(np.abs(own - values.mean(axis=0)) + half)
     if scales := companions.scales():
         errors.append(scales.error(quantity_of, companions.area_at_pull_off))
-    for low, high in companions.material_ends():
-        ends = [np.abs(quantity_of(companions.curve(contact)) - own) for contact in (low, high)]
-        errors.append(np.maximum(*ends))
+    for ends in companions.material_ends():
+        reference = quantity_of(companions.curve(companions.of_materials))
+        low, high = (np.abs(quantity_of(companions.curve(end)) - reference) for end in ends)
+        errors.append(np.maximum(low, high))
     return errors
 
 

@@ -27,7 +27,7 @@ from restitution.contact.contact import Contact, smooth
 from restitution.contact.interface import interface_of
 from restitution.contact.loading import solve
 from restitution.contact.models import COMPANION, RESTITUTION_ERROR
-from restitution.contact.patch.law import PatchLaw, law_of_patches
+from restitution.contact.patch.law import PatchAttraction, PatchLaw, law_of_patches
 from restitution.contact.prescribed.velocity import path_around_work
 from restitution.contact.state import State
 from restitution.curve.columns import Array
@@ -126,7 +126,9 @@ class ScaleCurves:
 
     `single` has the curve of the law of each patch, `weaker` that of weaker bodies if their bound
     grows, and `without` that without the waves of the patches if the bodies do not attract each
-    other. `edge` is that of a patch, and `wavelength` that of the split of the run (m).
+    other. `wavelength` is that of the split of the run, and `edge` that of a patch (m); `edge` is 0
+    if asperities have their places in the contact, so that other surfaces show the scatter of such
+    a sample.
     """
 
     own: WorkCurve
@@ -150,7 +152,7 @@ class ScaleCurves:
             weaker = companions.curve(weak)
         if not law.attracts:
             without = companions.curve(replace(coarse, adhesion=None))
-        edge = how.nodes * how.cell
+        edge = 0.0 if isinstance(law, PatchAttraction) else how.nodes * how.cell
         return cls(companions.reference, tuple(single), weaker, without, edge, how.wavelength)
 
     def error(self, quantity_of: Callable[[WorkCurve], Array], area: Array | float) -> Array:
@@ -265,7 +267,7 @@ class Companions:
         and density. The values of both bodies are set to the low, then to the high end; the larger
         change counts.
         """
-        here, mass = self.reference.at(work), self.coarse.pair.mass
+        here, mass = self.curve(self.of_materials).at(work), self.coarse.pair.mass
         changes = []
         for ends in self.material_ends():
             low, high = (np.abs(self.curve(contact).at(work) - here) for contact in ends)
@@ -280,7 +282,15 @@ class Companions:
     def material_ends(self) -> list[tuple[Contact, Contact]]:
         """Pairs of contacts with one kind of library value at either end of its spread."""
         ends = (self.stiffness_ends, self.strength_ends, self.adhesion_ends)
-        return [pair for pair in ends if any(contact != self.coarse for contact in pair)]
+        return [pair for pair in ends if any(contact != self.of_materials for contact in pair)]
+
+    @cached_property
+    def of_materials(self) -> Contact:
+        """`coarse`, with which those with other materials are compared; it has a single patch."""
+        law = self.coarse.adhesion
+        if not isinstance(law, PatchAttraction):
+            return self.coarse
+        return replace(self.coarse, adhesion=replace(law, patches=law.patches[:1]))
 
     @cached_property
     def stiffness_ends(self) -> tuple[Contact, Contact]:
@@ -294,20 +304,21 @@ class Companions:
 
     @cached_property
     def adhesion_ends(self) -> tuple[Contact, Contact]:
-        known, adhesion = self.case.library_adhesion(), self.coarse.adhesion
+        known, adhesion = self.case.library_adhesion(), self.of_materials.adhesion
         if known is None or adhesion is None:
-            return self.coarse, self.coarse
+            return self.of_materials, self.of_materials
         low, high = (
-            replace(self.coarse, adhesion=adhesion.with_work_of_adhesion(w))
+            replace(self.of_materials, adhesion=adhesion.with_work_of_adhesion(w))
             for w in (known.low, known.high)
         )
         return low, high
 
     def with_modulus_of(self, case: Case) -> Contact:
-        return replace(self.coarse, pair=_with_modulus_of(self.coarse.pair, case.pair()))
+        pair = _with_modulus_of(self.coarse.pair, case.pair())
+        return replace(self.of_materials, pair=pair)
 
     def with_yield_of(self, case: Case) -> Contact:
-        return replace(self.coarse, **_yielding(case).arguments())
+        return replace(self.of_materials, **_yielding(case).arguments())
 
     def curve(self, contact: Contact) -> WorkCurve:
         """The curve of `contact`, computed once; `contact` is `coarse` with other materials."""
@@ -369,8 +380,10 @@ def coarser_contact(contact: Contact) -> Contact:
     coarser = coarsen(contact.surface)
     if contact.surface.provenance.get("source") == "smooth":
         coarser = smooth(coarser.grid)
-    if not interface_of(contact).resolves_range(replace(contact, surface=coarser)):
-        coarser = replace(coarser, provenance={**coarser.provenance, COMPANION: True})
+    new = replace(contact, surface=coarser)
+    if interface_of(new).resolves_range(new):
+        return new
+    coarser = replace(coarser, provenance={**coarser.provenance, COMPANION: True})
     return replace(contact, surface=coarser)
 
 

@@ -38,7 +38,7 @@ def material_parts(companions: Companions, work: Array) -> list[MaterialPart]:
     ]
     if (w := case.library_adhesion()) is not None:
         pair = " on ".join(str(table.material) for table in case.bodies().values())
-        here = companions.reference.at(work)
+        here = _reference(companions, work)
         ends = [companions.curve(contact).at(work) - here for contact in companions.adhesion_ends]
         parts.append(_part("interface.work_of_adhesion", pair, w, np.max(np.abs(ends), axis=0)))
     return parts
@@ -56,14 +56,15 @@ def _change(companions: Companions, work: Array, body: str, key: str) -> Array:
 
 
 def _changes(companions: Companions, work: Array, body: str, key: str) -> Iterator[Array]:
-    here, coarse = companions.reference.at(work), companions.coarse
+    coarse = companions.coarse
     for end in ENDS:
         case = moved(companions.case, end, body, key)
         mass, own_mass = case.pair().mass, coarse.pair.mass
         if key in _ELASTIC:
             yield _elastic_change(companions, work, case.pair().contact_modulus)
         elif key in _STRENGTHS:
-            yield companions.curve(companions.with_yield_of(case)).at(work) - here
+            weaker = companions.curve(companions.with_yield_of(case))
+            yield weaker.at(work) - _reference(companions, work)
         elif mass is not None and own_mass is not None:
             own = companions.own
             yield own.at(work * mass / own_mass) - own.at(work)
@@ -80,4 +81,9 @@ def _elastic_change(companions: Companions, work: Array, contact_modulus: float)
     if span == 0:
         return np.zeros(work.size)
     share = math.log(contact_modulus / own) / span
-    return np.asarray(share * (companions.curve(end).at(work) - companions.reference.at(work)))
+    change = companions.curve(end).at(work) - _reference(companions, work)
+    return np.asarray(share * change)
+
+
+def _reference(companions: Companions, work: Array) -> Array:
+    return companions.curve(companions.of_materials).at(work)

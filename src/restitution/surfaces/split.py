@@ -27,10 +27,12 @@ class SplitSurface(Surface):
     Attributes:
         patches: Periodic surfaces with the short waves.
         wavelength: Length (m) of the shortest waves that remain, along an axis.
+        place: Number of the surface among those that share the patches.
     """
 
     patches: tuple[Surface, ...] = ()
     wavelength: float = math.inf
+    place: int = 0
 
 
 @typed

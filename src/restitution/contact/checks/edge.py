@@ -85,7 +85,8 @@ def largest_reach(contact: Contact, indentation: float) -> float:
     R, x, y = contact.pair.radius, contact.grid.x[:, None], contact.grid.y[None, :]
     height = contact.surface.height
     shift = float(((x * x + y * y) / (2 * R) - height).min())
-    return math.sqrt(2 * R * (indentation + float(height.max()) + shift))
+    # With adhesion, bodies touch at a negative indentation, too.
+    return math.sqrt(2 * R * max(indentation + float(height.max()) + shift, 0.0))
 
 
 def needed_edges(contact: Contact, indentation: float) -> tuple[float, float]:

@@ -21,6 +21,9 @@ _STOPS = {
 }
 
 
+_FINER = 0.99  # keeps a limit valid that is printed with four digits
+
+
 @dataclass(frozen=True)
 class Finding(ABC):
     """The result of a check: its values (SI units), and the text that they make.
@@ -99,6 +102,19 @@ class RangeUnresolved(Finding):
             "times the smaller of E* z0^2/w and sqrt(R* z0), with the work of adhesion w and the "
             f"equilibrium separation z0): multiply grid.refine by {self.times}"
             + ("" if self.periodic else ', or set interface.adhesion = "jkr"')
+        )
+
+
+@dataclass(frozen=True)
+class PatchRangeUnresolved(Finding):
+    spacing: float
+    needed: float
+
+    def text(self, prescribed: str = "indentation") -> str:
+        return (
+            f"grid.spacing: cells of {_nm(self.spacing)} are too coarse for the range of the "
+            f"attraction of rough surfaces, the waves of which are in patches; set grid.spacing to "
+            f"{_nm(_FINER * self.needed)} or less"
         )
 
 

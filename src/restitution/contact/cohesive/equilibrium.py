@@ -31,7 +31,7 @@ from restitution.numerics.read_only import freeze
 from restitution.numerics.truncated_newton import minimise_locally
 
 if TYPE_CHECKING:
-    from restitution.contact.cohesive.law import CohesiveLaw
+    from restitution.contact.cohesive.law import CohesiveLaw, NodeLaw
 
 # A solve includes all nodes at which the attraction matters. At these nodes the gap before elastic
 # deformation is below about _REACH z₀ + L, where L is `Adhesion.length`.
@@ -73,7 +73,7 @@ class CohesiveState(State):
     @property
     def box_touching(self) -> NDArray[np.bool_]:
         """Whether the gap of each node is below that of the largest attraction (bool)."""
-        return box_gap(self) < law_of(self.contact).gap_of_largest_traction
+        return np.asarray(box_gap(self) < nodes_of(self.contact, self.box).gap_of_largest_traction)
 
     @property
     def mean_gap(self) -> float:
@@ -89,6 +89,10 @@ def law_of(contact: Contact) -> CohesiveLaw:
     return cast("CohesiveLaw", contact.adhesion)
 
 
+def nodes_of(contact: Contact, box: Box) -> NodeLaw:
+    return law_of(contact).at_nodes(contact, box)
+
+
 class BoundedLaw:
     """The traction law of the nodes of a box, as a function of their elastic displacement u.
 
@@ -97,11 +101,15 @@ class BoundedLaw:
     finite if the iteration reaches negative gaps. The limit is reached at the gap `least` (m).
     """
 
-    def __init__(self, contact: Contact, base: Array, limit: Array | float) -> None:
+    def __init__(
+        self, contact: Contact, base: Array, limit: Array | float, box: Box | None = None
+    ) -> None:
         self.base = base
         self.yields = bool(np.all(np.isfinite(limit)))
         bound = np.asarray(limit if self.yields else contact.pair.contact_modulus, dtype=float)
-        self._law = law_of(contact)
+        self._law = law_of(contact) if box is None else nodes_of(contact, box)
+        self._z0 = law_of(contact).equilibrium_separation
+        self.steep = self._law.steep
         self.least = self._law.gap_at(bound)
         self._slope = -bound
         self._stiff = 0.0 if self.yields else self._law.stiffness(self.least)
@@ -113,10 +121,12 @@ class BoundedLaw:
         energy, slope, stiff = self._law.potential(inside)
         at = np.flatnonzero(gap < inside)
         below = gap.ravel()[at] - inside.ravel()[at]
-        limit = np.broadcast_to(self._slope, gap.shape).ravel()[at]
-        energy.ravel()[at] += below * (limit + 0.5 * self._stiff * below)
-        slope.ravel()[at] += self._stiff * below
-        stiff.ravel()[at] = self._stiff
+        limit, rate = (
+            np.broadcast_to(x, gap.shape).ravel()[at] for x in (self._slope, self._stiff)
+        )
+        energy.ravel()[at] += below * (limit + 0.5 * rate * below)
+        slope.ravel()[at] += rate * below
+        stiff.ravel()[at] = rate
         return energy, slope, stiff
 
     def secant(self, u: Array, p: Array, slope: Array, stiff: Array) -> Array:
@@ -125,7 +135,7 @@ class BoundedLaw:
         The repulsion is so steep that Newton steps along its tangent would be far too short or too
         long, but the pressures of a step are nearly right.
         """
-        gap, z0 = self.base + u, self._law.equilibrium_separation
+        gap, z0 = self.base + u, self._z0
         at = np.flatnonzero((p > 0) | (gap < z0))
         limit = np.broadcast_to(-self._slope, p.shape).ravel()[at]
         wanted = np.maximum(p.ravel()[at], 0.0)
@@ -175,7 +185,7 @@ def solve_cohesive(
     K = _operator(contact, box)
     before = np.zeros(contact.grid.nodes) if history is None else history.plastic_displacement
     upper = limit[box] if isinstance(limit, np.ndarray) else limit
-    law = BoundedLaw(contact, _base(contact, indentation, box, before), upper)
+    law = BoundedLaw(contact, _base(contact, indentation, box, before), upper, box)
     z0 = law_of(contact).equilibrium_separation
     solved = minimise_locally(
         K,
@@ -185,7 +195,7 @@ def solve_cohesive(
         length=0.5 * z0,
         tolerance=max(_TOLERANCE * residual, _LEAST_TOLERANCE) * z0,
         zero_mean=contact.periodic,
-        secant=law.secant,
+        secant=law.secant if law.steep else None,
     )
     if not solved.converged:
         raise NotConvergedError(
@@ -207,7 +217,7 @@ def solve_cohesive(
     gap = np.maximum(law.base + solved.u, law.least)
     area = contact.grid.cell_area
     far_force, far_energy = _far(contact, indentation, box)
-    energy = float(np.sum(law_of(contact).energy(gap))) * area
+    energy = float(np.sum(nodes_of(contact, box).energy(gap))) * area
     if not law.yields:
         # Below the gap `law.least`, the law of elastic bodies is continued linearly. Add the energy
         # of this continuation.
@@ -251,7 +261,7 @@ def rigid_start(contact: Contact, *, limit: Array | float, residual: float) -> C
 
 def rigid_pressure(contact: Contact, indentation: float, box: Box) -> Array:
     """Pressure (Pa) between rigid bodies, but zero below the gap of the largest attraction."""
-    law, gap = law_of(contact), _base(contact, indentation, box, None)
+    law, gap = nodes_of(contact, box), _base(contact, indentation, box, None)
     least = law.gap_of_largest_traction
     return np.where(gap > least, -law.traction(np.maximum(gap, least)), 0.0)
 
@@ -312,7 +322,7 @@ def is_unique(state: CohesiveState) -> bool:
     if contact.periodic:
         compliance = max(contact.grid.size) / (math.pi * contact.pair.contact_modulus)
         return compliance * law.largest_softening(state.smallest_gap) < _UNIQUE
-    softening = np.maximum(-law.stiffness(box_gap(state)), 0.0)
+    softening = np.maximum(-nodes_of(contact, state.box).stiffness(box_gap(state)), 0.0)
     K = _operator(contact, state.box)
     return float(K(softening).max()) < _UNIQUE
 

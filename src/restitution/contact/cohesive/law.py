@@ -7,7 +7,7 @@ from abc import abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import cast
+from typing import Protocol, cast
 
 import numpy as np
 
@@ -29,6 +29,7 @@ from restitution.contact.models import (
 )
 from restitution.contact.state import Array, State
 from restitution.errors import CaseError
+from restitution.numerics.box import Box
 from restitution.numerics.expressions import lennard_jones
 from restitution.numerics.quadrature import integrate_adaptively
 from restitution.theory import LennardJones
@@ -53,6 +54,29 @@ _SHARES = (*(0.5**k for k in range(1, 11)), *(-(2.0**k) for k in range(20)))
 _SAMPLES = 2000  # gaps at which the slope of such a law is sampled
 
 
+class NodeLaw(Protocol):
+    """A traction law at certain nodes; the values of a node are in arrays of their shape.
+
+    `steep` tells whether steps along the tangent of its repulsion are poor.
+    """
+
+    @property
+    def steep(self) -> bool: ...
+
+    @property
+    def gap_of_largest_traction(self) -> Array | float: ...
+
+    def potential(self, gap: Array) -> tuple[Array, Array, Array]: ...
+
+    def energy(self, gap: Array) -> Array: ...
+
+    def traction(self, gap: Array) -> Array: ...
+
+    def stiffness(self, gap: Array) -> Array: ...
+
+    def gap_at(self, pressure: Array) -> Array: ...
+
+
 class CohesiveLaw(Adhesion):
     """A traction law between the surfaces, as a function of their gap g.
 
@@ -63,6 +87,7 @@ class CohesiveLaw(Adhesion):
 
     bytes_per_node = 1800.0  # up to 100 states are kept, with 16 bytes per node each
     follows_path = True
+    steep = True
 
     @abstractmethod
     def energy(self, gap: Array) -> Array:
@@ -84,6 +109,10 @@ class CohesiveLaw(Adhesion):
     def potential(self, gap: Array) -> tuple[Array, Array, Array]:
         """New arrays of energy, traction and stiffness."""
         return self.energy(gap), self.traction(gap), self.stiffness(gap)
+
+    def at_nodes(self, contact: Contact, box: Box) -> NodeLaw:
+        """The law at the nodes of `box`, by default the same at all."""
+        return self
 
     def gap_at(self, pressure: Array) -> Array:
         """Gap (m) at which the pressure (Pa, not negative) of the law has this value."""
@@ -177,7 +206,7 @@ class CohesiveLaw(Adhesion):
         return (work + lost - released) / state.stored_energy
 
     def node_stiffness(self, state: State) -> Array | None:
-        return self.stiffness(box_gap(state))
+        return self.at_nodes(state.contact, state.box).stiffness(box_gap(state))
 
     def zone_length(self, pair: Pair) -> float:
         """Length E*z₀²/w (m) of the cohesive zone at the edge of a contact."""

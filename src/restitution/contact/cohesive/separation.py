@@ -223,6 +223,7 @@ def _end_of_contact(path: list[State]) -> float:
         return after.indentation
     goal = law_of(before.contact).gap_of_largest_traction
     way = (goal - before.smallest_gap) / (after.smallest_gap - before.smallest_gap)
+    way = min(max(way, 0.0), 1.0)  # the smallest gap need not be that of the last node
     return before.indentation + way * (after.indentation - before.indentation)
 
 

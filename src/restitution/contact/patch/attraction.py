@@ -14,6 +14,7 @@ from restitution.contact.cohesive.loading import load_cohesive
 from restitution.contact.cohesive.steps import follow
 from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import RESIDUAL
+from restitution.contact.patch.blocks import Shape, block_means
 from restitution.contact.patch.stored import bodies_in_words, is_kept, kept
 from restitution.contact.state import Array
 from restitution.errors import DomainError
@@ -24,6 +25,7 @@ from restitution.numerics.tabulated import Tabulated
 _HIGHEST, _OF_HARDNESS, _CLOSED, _BEYOND = 0.1, 0.97, 0.95, 3.0
 _ACCURACY = 4e-5  # of the steps: finer than for a force, because the table is interpolated
 _CELLS = 4096  # of the table
+_RIGID = 100  # points of the pressure of rigid bodies
 _FAR = 25.0  # gap at the end of the table beyond the highest asperity, in units of z₀
 
 
@@ -33,7 +35,8 @@ class AttractionCurve:
 
     `gap` (m) is the distance of the mean planes before deformation, `pressure` (Pa) the nominal
     pressure (tension is negative), `work` that of loading (J/m², 0 at infinity), `lost` the work
-    per area that yielding and jumps have dissipated (J/m²), and `jumps` their number.
+    per area that yielding and jumps have dissipated (J/m²), and `jumps` their number. `blocks` has
+    the mean pressure (Pa) of each block of the patch, with one row for each gap.
     """
 
     contact: Contact
@@ -41,18 +44,23 @@ class AttractionCurve:
     pressure: Array
     work: Array
     lost: Array
+    blocks: Array
     jumps: int
 
     @classmethod
-    def of(cls, contact: Contact) -> AttractionCurve:
-        """Load `contact`, a periodic contact with an attraction of finite range."""
-        columns = dict(kept(contact.surface, _models(contact), lambda: _columns(contact)))
+    def of(cls, contact: Contact, shape: Shape) -> AttractionCurve:
+        """Load `contact`, a periodic contact with an attraction of finite range.
+
+        `shape` is the number of blocks along each axis.
+        """
+        models = _models(contact, shape)
+        columns = dict(kept(contact.surface, models, lambda: _columns(contact, shape)))
         return cls(contact, jumps=int(columns.pop("jumps")[0]), **columns)
 
     @staticmethod
-    def is_known(contact: Contact) -> bool:
+    def is_known(contact: Contact, shape: Shape) -> bool:
         """Whether `of` need not solve `contact`."""
-        return is_kept(contact.surface, _models(contact))
+        return is_kept(contact.surface, _models(contact, shape))
 
     def at(self, gap: Array) -> tuple[Array, Array]:
         """Pressure and dissipated work at each `gap` (m); rigid bodies beyond the first state."""
@@ -64,30 +72,33 @@ class AttractionCurve:
         p = -work.derivative()(inside)
         lost = PchipInterpolator(self.gap[::-1], self.lost[::-1])(inside)
         far = gap > self.gap[0]
-        p[far] = self.rigid(gap[far])
+        if far.any():
+            points = np.geomspace(self.gap[0], float(gap.max()), _RIGID)
+            p[far] = PchipInterpolator(points, self._rigid(points))(gap[far])
         return p, lost
 
-    def rigid(self, gap: Array) -> Array:
+    def _rigid(self, gap: Array) -> Array:
         """Nominal pressure (Pa) of rigid bodies at each `gap` (m)."""
         law, local = law_of(self.contact), self.contact.gap - self.contact.gap.mean()
         return np.array([-float(law.traction(local + g).mean()) for g in gap.tolist()])
 
 
-def _models(contact: Contact) -> object:
-    return bodies_in_words(contact.pair), contact.plasticity, contact.adhesion
+def _models(contact: Contact, shape: Shape) -> object:
+    return bodies_in_words(contact.pair), contact.plasticity, contact.adhesion, shape
 
 
-def _columns(contact: Contact) -> dict[str, Array]:
+def _columns(contact: Contact, shape: Shape) -> dict[str, Array]:
     area, z0 = math.prod(contact.grid.size), law_of(contact).equilibrium_separation
     touch = float(contact.gap.mean()) + z0
-    rows, jumps = [], 0
+    rows, blocks, jumps = [], [], 0
     for state in _loading(contact):
         lost = state.plastic_work + state.adhesive_loss
         work = state.potential_energy + lost
         rows.append((touch - state.indentation, state.force / area, work / area, lost / area))
+        blocks.append(block_means(state.box_pressure, shape))
         jumps = state.jumps
     columns = dict(zip(("gap", "pressure", "work", "lost"), np.array(rows).T, strict=True))
-    return columns | {"jumps": np.array([float(jumps)])}
+    return columns | {"blocks": np.array(blocks), "jumps": np.array([float(jumps)])}
 
 
 def _loading(contact: Contact) -> Iterator[CohesiveState]:

@@ -11,18 +11,21 @@ import numpy as np
 
 from restitution.arguments import typed
 from restitution.contact.bodies import Pair
-from restitution.contact.checks.findings import Finding
+from restitution.contact.checks.findings import Finding, PatchRangeUnresolved
 from restitution.contact.checks.resolution import radius_of_asperities
 from restitution.contact.cohesive.equilibrium import box_gap
-from restitution.contact.cohesive.law import COARSEST, Cohesive, CohesiveLaw
+from restitution.contact.cohesive.law import COARSEST, Cohesive, CohesiveLaw, NodeLaw
 from restitution.contact.contact import Contact
 from restitution.contact.interface import NoAttraction
-from restitution.contact.models import Plasticity, Separation
+from restitution.contact.models import COMPANION, Plasticity, Separation
 from restitution.contact.patch.attraction import AttractionCurve, AttractionTable
+from restitution.contact.patch.blocks import BlockLaw, BlockTables, Shape, shape_in
 from restitution.contact.patch.equilibrium import PatchState, solve_with_patches
 from restitution.contact.patch.repulsion import PatchCurve, RepulsionTable
 from restitution.contact.plasticity.bound import Elastic
 from restitution.contact.state import Array, State
+from restitution.errors import CaseError
+from restitution.numerics.box import Box
 from restitution.numerics.read_only import freeze
 from restitution.surfaces import Surface, rms_slope
 from restitution.theory import JKR
@@ -145,6 +148,8 @@ class PatchAttraction(CohesiveLaw):
         attraction: Attraction between half-spaces.
         pair: The bodies; set by `Contact`.
         plasticity: How they yield; set by `Contact`.
+        place: Number of the part of the patches that is at the middle of the grid; 0: their middle.
+        cell: Cells of the grid (m); set by `Contact`.
     """
 
     patches: tuple[Surface, ...]
@@ -152,15 +157,20 @@ class PatchAttraction(CohesiveLaw):
     attraction: Cohesive
     pair: Pair | None = None
     plasticity: Plasticity = Elastic()
+    place: int = 0
+    cell: tuple[float, float] | None = None
 
     label = "patch"
     seconds_per_node: ClassVar[float] = 1.2e-4
 
     def of_contact(self, contact: Contact) -> PatchAttraction:
-        pair = flat(contact.pair)
-        if self.pair == pair and self.plasticity == contact.plasticity:
-            return self
-        return replace(self, pair=pair, plasticity=contact.plasticity)
+        new = replace(
+            self,
+            pair=flat(contact.pair),
+            plasticity=contact.plasticity,
+            cell=contact.grid.spacing,
+        )
+        return self if new == self else new
 
     def with_work_of_adhesion(self, work_of_adhesion: float) -> PatchAttraction:
         return replace(self, attraction=replace(self.attraction, work_of_adhesion=work_of_adhesion))
@@ -171,7 +181,10 @@ class PatchAttraction(CohesiveLaw):
 
     def curve(self, patch: Surface) -> AttractionCurve:
         """The loading of one of the patches."""
-        return AttractionCurve.of(self._contact(patch))
+        return AttractionCurve.of(self._contact(patch), self._shape(patch))
+
+    def _shape(self, patch: Surface) -> Shape:
+        return shape_in(patch.grid, self.cell or patch.grid.size)
 
     def _contact(self, patch: Surface) -> Contact:
         pair = self.pair
@@ -180,13 +193,29 @@ class PatchAttraction(CohesiveLaw):
         return Contact(pair, patch, model, self.attraction, periodic=True)
 
     def grid_finding(self, contact: Contact) -> Finding | None:
-        known = all(AttractionCurve.is_known(self._contact(patch)) for patch in self.patches)
-        return super().grid_finding(contact) if known else None
+        known = all(
+            AttractionCurve.is_known(self._contact(patch), self._shape(patch))
+            for patch in self.patches
+        )
+        if not known or self.resolves_range(contact):
+            return None
+        return self._too_coarse(contact)
+
+    def require_fine_grid(self, contact: Contact) -> None:
+        if not self.resolves_range(contact) and not contact.surface.provenance.get(COMPANION):
+            raise CaseError(self._too_coarse(contact).text())
+
+    def _too_coarse(self, contact: Contact) -> PatchRangeUnresolved:
+        needed = self.coarsest_spacing(contact.pair)
+        return PatchRangeUnresolved(max(contact.grid.spacing), needed)
 
     @cached_property
     def table(self) -> AttractionTable:
         """The mean of the patches."""
-        return AttractionTable.of([self.curve(patch) for patch in self.patches])
+        return _tables(replace(self, place=0))[0]
+
+    def at_nodes(self, contact: Contact, box: Box) -> NodeLaw:
+        return _on_grid(self, contact).inside(box)
 
     def summary(self) -> dict[str, float]:
         """Numbers of the law, by their names in `summary.json`."""
@@ -255,6 +284,17 @@ class PatchAttraction(CohesiveLaw):
     def needed_spacing(self, state: State) -> float:
         radius = radius_of_asperities(state)
         return min(self.coarsest_spacing(state.contact.pair), 0.5 * math.sqrt(radius * self.reach))
+
+
+@lru_cache(maxsize=8)
+def _tables(law: PatchAttraction) -> tuple[AttractionTable, BlockTables]:
+    curves = [law.curve(patch) for patch in law.patches]
+    return AttractionTable.of(curves), BlockTables.of(curves, law.cell or law.patches[0].grid.size)
+
+
+@lru_cache(maxsize=4)
+def _on_grid(law: PatchAttraction, contact: Contact) -> BlockLaw:
+    return BlockLaw.on(_tables(replace(law, place=0))[1], contact, law.place)
 
 
 @lru_cache(maxsize=4)

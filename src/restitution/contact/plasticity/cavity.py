@@ -201,8 +201,10 @@ class ExpandingCavity(Plasticity):
     ) -> Array:
         merged = nominal / np.maximum(measure, nominal)
         separate = 1 - merged * np.sqrt(merged)
-        ratio = _depth_ratio(contact.crest_gap, depth) ** separate
-        return self.bound_at(contact.pair, measure * ratio, contact.elongation * separate)
+        gap = contact.crest_gap
+        ratio = _DEPTH_FACTOR * np.maximum(depth - gap, 0) / (_DEPTH_FACTOR * depth - gap)
+        measure = measure * ratio**separate
+        return self.bound_at(contact.pair, measure, contact.elongation * separate)
 
     def smooth_bounds(self, pair: Pair, count: int) -> tuple[Array, Array]:
         first = self.first_yield_pressure(pair)
