@@ -274,3 +274,18 @@ def test_a_scan_that_is_replaced_has_other_patches(tmp_path):
         contact = scan_of(tmp_path, 'below_grid = "patch"', seed=seed).contact(tmp_path)
         heights.append(contact.adhesion.patches[0].height)
     assert not np.array_equal(*heights)
+
+
+def test_patches_where_their_error_holds_too_rarely_are_said_once(tmp_path):
+    """A bound that grows, and an indentation below the rms height."""
+    grows = CASE.replace('yield_pressure = "3 GPa"', "")
+
+    def notice(velocity, choice):
+        values = {**USUAL, "shortest": "0.8 um", "more": choice, "velocity": velocity}
+        return notice_of(parse_case(grows.format(**values)), tmp_path)
+
+    deep, light = "0.2 m/s", "5 mm/s"
+    asked = 'below_grid = "patch"'
+    assert notice(deep, asked) is None
+    assert "can be off by more than its error" in notice(light, asked)
+    assert notice(light, "") is None

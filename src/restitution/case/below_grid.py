@@ -85,12 +85,17 @@ def _where_waves_matter(case: CaseTables, folder: Path) -> Splitting | None:
         return None
     if _SEPARATE * wanted.split > _radius(case):
         return None
-    if case.yielding().model.grows:
-        rms = math.hypot(*(part.rms_height(folder) for part in case.roughness))
-        if case.indentation_at(case.depths()[0]) < rms:
-            return None
+    if _on_few_asperities(case, folder):
+        return None
     sized = _sized(case, folder, wanted)
     return sized if sized.nodes <= _MOST_BY_DEFAULT else None
+
+
+def _on_few_asperities(case: CaseTables, folder: Path) -> bool:
+    if not case.yielding().model.grows:
+        return False
+    rms = math.hypot(*(part.rms_height(folder) for part in case.roughness))
+    return case.indentation_at(case.depths()[0]) < rms
 
 
 def _radius(case: CaseTables) -> float:
@@ -100,10 +105,19 @@ def _radius(case: CaseTables) -> float:
 
 
 def notice_of(case: CaseTables, folder: Path) -> str | None:
-    """One line if the case asks for patches, but no waves are left to them."""
-    if _choice(case) != "patch" or _wanted(case, folder) is not None:
+    """One line if patches were asked for, but have no waves or an error that holds too rarely."""
+    if _choice(case) != "patch":
         return None
-    return "roughness.below_grid: no waves are below the grid, so nothing is split"
+    if _wanted(case, folder) is None:
+        return "roughness.below_grid: no waves are below the grid, so nothing is split"
+    if not case.interface.adhesive_energy and _on_few_asperities(case, folder):
+        return (
+            "roughness.below_grid: the smallest indentation is below the rms height; where few "
+            "asperities carry a contact and the bound grows, COR with patches can be off by more "
+            'than its error. Use below_grid = "omit" with a larger grid.refine or smaller '
+            "grid.spacing, or only the larger depths"
+        )
+    return None
 
 
 class _Wanted(NamedTuple):

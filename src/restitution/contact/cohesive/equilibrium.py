@@ -119,14 +119,12 @@ class BoundedLaw:
         gap = self.base + u
         inside = np.maximum(gap, self.least)
         energy, slope, stiff = self._law.potential(inside)
-        at = np.flatnonzero(gap < inside)
-        below = gap.ravel()[at] - inside.ravel()[at]
-        limit, rate = (
-            np.broadcast_to(x, gap.shape).ravel()[at] for x in (self._slope, self._stiff)
-        )
-        energy.ravel()[at] += below * (limit + 0.5 * rate * below)
-        slope.ravel()[at] += rate * below
-        stiff.ravel()[at] = rate
+        at = np.nonzero(gap < inside)
+        below = gap[at] - inside[at]
+        limit, rate = (np.broadcast_to(x, gap.shape)[at] for x in (self._slope, self._stiff))
+        energy[at] += below * (limit + 0.5 * rate * below)
+        slope[at] += rate * below
+        stiff[at] = rate
         return energy, slope, stiff
 
     def secant(self, u: Array, p: Array, slope: Array, stiff: Array) -> Array:
