@@ -343,13 +343,13 @@ def test_velocities_instead_of_depths(cli, case_text, tmp_path, also):
 
 @pytest.mark.parametrize("verb", ["check", "surface"])
 def test_the_surface_is_made_once(cli, case_text, tmp_path, monkeypatch, verb):
-    from restitution.case import roughness
+    from restitution.case import generated
 
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))  # another test may have kept the surface
     made = []
-    make = roughness.generate_surface
+    make = generated.generate_surface
     monkeypatch.setattr(
-        roughness, "generate_surface", lambda *a, **more: made.append(1) or make(*a, **more)
+        generated, "generate_surface", lambda *a, **more: made.append(1) or make(*a, **more)
     )
     (tmp_path / "case.toml").write_text(case_text)
     out = () if verb == "check" else ("-o", tmp_path / "out")

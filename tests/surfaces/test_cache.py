@@ -93,7 +93,7 @@ def test_the_oldest_make_room(folder, monkeypatch):
 
 
 def test_cases_use_it(folder, case_text, tmp_path, monkeypatch):
-    from restitution.case import roughness
+    from restitution.case import generated, measured
     from restitution.case.case_file import parse_case
 
     np.save(tmp_path / "scan.npy", 1e-8 * np.random.default_rng(1).standard_normal((40, 40)))
@@ -105,8 +105,8 @@ def test_cases_use_it(folder, case_text, tmp_path, monkeypatch):
     for text in (case_text, case_text[:begin] + rough + case_text[end:]):
         first = parse_case(text).surface(tmp_path)
         with monkeypatch.context() as patch:
-            for name in ("generate_surface", "extend"):
-                patch.setattr(roughness, name, lambda *_, **__: pytest.fail("made again"))
+            for module, name in ((generated, "generate_surface"), (measured, "extend")):
+                patch.setattr(module, name, lambda *_, **__: pytest.fail("made again"))
             again = parse_case(text).surface(tmp_path)
         np.testing.assert_array_equal(first.height, again.height)
         assert first.provenance == again.provenance

@@ -36,9 +36,11 @@ def constant(pair: ExportedPair) -> list[OwnLaw]:
 
 
 def fitted(pair: ExportedPair, name: str, words: str) -> list[OwnLaw]:
-    """The law `name` fitted to that of the pair, if there is one, called `words`."""
+    """The law `name` fitted to that of the pair, called `words`, if its e at the points is known."""
     fit = pair.fitted(name)
-    return [] if fit is None else [OwnLaw(words, np.array(fit.restitution, dtype=float))]
+    if fit is None or not fit.restitution:
+        return []
+    return [OwnLaw(words, np.array(fit.restitution, dtype=float))]
 
 
 @dataclass(frozen=True)
