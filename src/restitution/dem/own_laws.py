@@ -36,7 +36,7 @@ def constant(pair: ExportedPair) -> list[OwnLaw]:
 
 
 def fitted(pair: ExportedPair, name: str, words: str) -> list[OwnLaw]:
-    """The law `name` fitted to that of the pair, called `words`, if its e at the points is known."""
+    """The law `name` fitted to that of the pair, called `words`, if its e(V) is known."""
     fit = pair.fitted(name)
     if fit is None or not fit.restitution:
         return []
