@@ -58,7 +58,7 @@ def portable(table: PairTable, velocity: float | None, code: str) -> Export:
         whole=True,
         adhesive=True,
         steps=20,
-        accuracy="Then e is within 0.5 %.",
+        accuracy="In a contact, e is within 0.5 % of the law with 20 or more steps.",
     )
 
 
