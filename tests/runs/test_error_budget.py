@@ -16,7 +16,8 @@ from restitution.curve.work_curve import WorkCurve
 from restitution.errors import NotConvergedError
 from restitution.results.writer import ResultsFolder
 from restitution.runs import depths as depths_module
-from restitution.runs.companions import Companions, ScaleCurves, coarser_contact, curve_of
+from restitution.runs.companion_curves import curve_of
+from restitution.runs.companions import Companions, ScaleCurves, coarser_contact
 from restitution.runs.convergence import run_convergence
 from restitution.runs.ensemble import run_realisations
 from restitution.runs.error_budget import (

@@ -10,9 +10,9 @@ Where each unloading follows a path, the others have up to three impacts; only t
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -21,31 +21,28 @@ from restitution.case.below_grid import Splitting, split_surface
 from restitution.case.bodies import BodyTable
 from restitution.case.case import Case
 from restitution.case.interface import Yielding
-from restitution.collision import UnloadingMethod
 from restitution.contact.bodies import Pair
 from restitution.contact.contact import Contact, smooth
 from restitution.contact.interface import interface_of
-from restitution.contact.loading import solve
-from restitution.contact.models import COMPANION, RESTITUTION_ERROR
+from restitution.contact.models import COMPANION
 from restitution.contact.patch.law import PatchAttraction, PatchLaw, law_of_patches
-from restitution.contact.prescribed.velocity import path_around_work
-from restitution.contact.state import State
 from restitution.curve.columns import Array
-from restitution.curve.follow import Impact, Load, Unloading, follow
+from restitution.curve.follow import Impact
 from restitution.curve.work_curve import WorkCurve
-from restitution.errors import CaseError, DomainError, RestitutionError
+from restitution.errors import CaseError
 from restitution.numerics.intervals import half_interval
+from restitution.runs.companion_curves import (
+    curve_of,
+    impacts_of,
+    loads_around,
+    loads_at,
+    work_curve,
+)
 from restitution.runs.log import Say, ignore
 from restitution.surfaces.refine import coarsen
 
 ENDS = ("low", "high")  # of the spread of a library value
 SURFACES = 7  # number of additional surfaces from which the scatter is estimated
-_TOLERANCE = 0.005  # allowed error of COR due to the steps of adhesive unloading
-
-# A companion curve has two more depths than the run: the smallest depth times the first factor, and
-# the largest depth times the second factor. They are needed because other surfaces reach the same
-# loading work at other depths.
-_SHALLOWER, _DEEPER = 0.5, 1.3
 _MOST_PATHS = 3  # largest number of impacts of other companion curves that follow a path
 
 # Error of a bound that grows if patches have one of their own, beside that of a fine grid.
@@ -59,65 +56,6 @@ _OF_CHANGE, _LARGEST_RATIO = 0.25, 10.0
 # The same fraction at any radius if the bound grows: where few asperities of the long waves carry
 # the contact, their bulk yields too early.
 _OF_GROWING_CHANGE = 0.5
-
-
-def curve_of(
-    contact: Contact,
-    depths: Sequence[float],
-    method: UnloadingMethod,
-    tolerance: float = _TOLERANCE,
-) -> WorkCurve:
-    """Compute the curve of `contact` at `depths` (m) and at one more depth beyond each end.
-
-    `tolerance` is the allowed error of COR due to the steps of adhesive unloading. A depth that
-    cannot be solved is left out. The curve ends where the contact reaches the edge of the grid.
-    """
-    loads = _loads([contact] * len(depths), depths)
-    return _curve_of(_impacts(loads, method, tolerance))
-
-
-def _loads(contacts: Sequence[Contact], depths: Sequence[float]) -> list[Load]:
-    return [
-        Load(contact, partial(_solve, contact, depth), depth)
-        for contact, depth in zip(
-            (contacts[0], *contacts, contacts[-1]),
-            (_SHALLOWER * depths[0], *depths, _DEEPER * depths[-1]),
-            strict=True,
-        )
-    ]
-
-
-def _impacts(
-    loads: Sequence[Load], method: UnloadingMethod, tolerance: float = _TOLERANCE
-) -> list[Impact]:
-    return list(follow(loads, Unloading(method, tolerance=tolerance), _failed))
-
-
-def _curve_of(impacts: Iterable[Impact]) -> WorkCurve:
-    return WorkCurve.of(impact.collision for impact in impacts)
-
-
-def _failed(error: RestitutionError) -> bool:
-    return not isinstance(error, DomainError)  # deeper contacts reach the edge of the grid, too
-
-
-def _solve(contact: Contact, depth: float, start: State | None) -> State:
-    # Only a loading path is long enough to be worth continuing.
-    return solve(contact, depth, start=start if interface_of(contact).follows_path else None)
-
-
-def _around(contact: Contact, works: Sequence[float]) -> list[Load]:
-    """Loads on a path to below the first of `works` (J), beyond the last, and near the others."""
-    first, *others = works
-    ends = [(first, 0), *((work, 1) for work in others or works)]
-
-    def to(work: float, side: int, start: State | None) -> State:
-        scale = _TOLERANCE / RESTITUTION_ERROR * work
-        path = path_around_work(contact, work, start=start, scale=scale)
-        assert path is not None
-        return path[side]
-
-    return [Load(contact, partial(to, work, side), work) for work, side in ends]
 
 
 @dataclass(frozen=True)
@@ -203,12 +141,12 @@ class Companions:
     @cached_property
     def own(self) -> WorkCurve:
         """The curve of `coarse`."""
-        return _curve_of(self._own_impacts)
+        return work_curve(self._own_impacts)
 
     @cached_property
     def reference(self) -> WorkCurve:
         """The impacts of `own` with which those of other curves are compared."""
-        return _curve_of(self._compared) if self._follows_paths else self.own
+        return work_curve(self._compared) if self._follows_paths else self.own
 
     def weaker(self, factors: Array) -> WorkCurve:
         """The curve of `coarse` with its yield limit times `factors`, one for each depth."""
@@ -223,7 +161,7 @@ class Companions:
         ]
         if not lowered or all(contact == coarse for contact in lowered):
             return self.reference
-        return _curve_of(_impacts(_loads(lowered, depths), self.case.unloading.method))
+        return work_curve(impacts_of(loads_at(lowered, depths), self.case.unloading.method))
 
     def others(self, progress: Say = ignore) -> list[WorkCurve]:
         """Curves of other surfaces of the same kind (other seeds or places of the scan)."""
@@ -334,8 +272,8 @@ class Companions:
 
     @cached_property
     def _own_impacts(self) -> list[Impact]:
-        loads = _loads([self.coarse] * len(self.depths), self.depths)
-        return _impacts(loads, self.case.unloading.method)
+        loads = loads_at([self.coarse] * len(self.depths), self.depths)
+        return impacts_of(loads, self.case.unloading.method)
 
     @property
     def _follows_paths(self) -> bool:
@@ -371,7 +309,7 @@ class Companions:
         if self._follows_paths:
             works = [impact.collision.loading_work for impact in self._compared]
             works = [work for work in works if work > 0]
-            return _curve_of(_impacts(_around(contact, works), method) if works else ())
+            return work_curve(impacts_of(loads_around(contact, works), method) if works else ())
         return curve_of(contact, self.depths, method)
 
 
