@@ -15,77 +15,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app_process import App
+from app_client import Client
 from tolerance import approx
 
 pytest.importorskip("starlette", reason='the extra "app" is not installed')
 pytest.importorskip("uvicorn", reason='the extra "app" is not installed')
-
-CASE = """
-total_error = false
-[first]
-radius = "500 um"
-youngs_modulus = "210 GPa"
-poissons_ratio = 0.3
-density = "7850 kg/m^3"
-[interface]
-yield_pressure = "1 GPa"
-[grid]
-nodes = 64
-spacing = "1 um"
-[indentation]
-values = ["100 nm", "200 nm"]
-"""
-
-
-class Client(App):
-    """`restitution app`, and requests to it."""
-
-    def __init__(self, folder):
-        super().__init__(folder, CASE)
-        self.port, self.token = re.fullmatch(
-            r"http://127.0.0.1:(\d+)/#(\S+)", self.address
-        ).groups()
-
-    def ask(self, method, path, body=None, **headers):
-        """The status, headers and text of an answer."""
-        connection = http.client.HTTPConnection("127.0.0.1", int(self.port), timeout=60)
-        named = {name.replace("_", "-"): value for name, value in headers.items()}
-        given = {"Content-Type": "application/json", "X-Token": self.token, **named}
-        sent = {name: value for name, value in given.items() if value is not None}
-        text = json.dumps(body) if isinstance(body, dict) else body
-        connection.request(method, path, text, sent)
-        answer = connection.getresponse()
-        reply = answer.status, answer.headers, answer.read().decode(errors="replace")
-        connection.close()
-        return reply
-
-    def post(self, name, **values):
-        """The lines of a request that is answered."""
-        status, _, text = self.ask("POST", f"/api/{name}", values)
-        assert status == 200, text
-        return [json.loads(line) for line in text.splitlines()]
-
-    def download(self, values):
-        """The status and bytes of a file to take away."""
-        connection = http.client.HTTPConnection("127.0.0.1", int(self.port), timeout=60)
-        headers = {"Content-Type": "application/json", "X-Token": self.token}
-        connection.request("POST", "/api/take", json.dumps(values), headers)
-        answer = connection.getresponse()
-        reply = answer.status, answer.read()
-        connection.close()
-        return reply
-
-    def upload(self, name, content):
-        headers = {"Content_Type": "application/octet-stream", "X_File_Name": name, "X_Tab": "a"}
-        return self.ask("POST", "/api/upload", content, **headers)
-
-    def content(self):
-        return self.post("start")[0]["content"]
-
-    def scans(self):
-        (room,) = self.folder.glob("restitution-app-*")
-        return sorted(path.name for path in (room / "scans").iterdir())
 
 
 @pytest.fixture(scope="module")
@@ -345,47 +279,6 @@ def test_the_files_to_take_away_agree_with_the_page(app):
     for row, of_page in zip(results.curve.rows, line["curve"], strict=True):
         for name in ("restitution", "force_N", "impact_velocity_m_per_s", "loading_work_J"):
             assert row[name] == of_page[name]
-
-
-def worn_content(app):
-    content = app.content() | {"impact": {"velocity": ["0.05 m/s"]}}
-    del content["indentation"]
-    return content | {"impacts": {"coverage": 0.11, "places": 2}}
-
-
-def test_many_impacts_run_in_the_background_with_progress(app):
-    """New and run-in surfaces in one figure and one table; the export is at the coverage."""
-    content = worn_content(app)
-    *progress, line = app.post("run", tab="a", content=content, grids=1)
-    words = [said["progress"] for said in progress]
-    assert words[-2:] == ["run-in at 0.05 m/s, coverage 0", "run-in at 0.05 m/s, coverage 0.11"]
-    assert [round(row["coverage"], 1) for row in line["worn"]] == [0, 0.1]
-    assert line["worn"][0]["restitution"] == approx(line["results"][0]["restitution"], rel=0.02)
-    names = [trace.get("name") for trace in line["worn_figure"]["data"]]
-    assert {"new surfaces", "coverage 0.11"} <= set(names)
-    values = {"tab": "a", "content": content, "grids": 1, "code": "lammps", "velocity": "0.05 m/s"}
-    status, archive = app.download(values | {"what": "export"})
-    assert status == 200
-    with zipfile.ZipFile(io.BytesIO(archive)) as opened:
-        (path,) = (path for path in opened.namelist() if path.endswith("restitution_lammps.txt"))
-        words = b" ".join(opened.read(path).split())
-    assert b"that earlier impacts have covered 0.106 times" in words
-
-
-def test_many_impacts_stop_when_the_page_closes_the_request(app):
-    content = worn_content(app) | {"total_error": True}
-    content["impacts"] = {"coverage": 20, "places": 200}
-    connection = http.client.HTTPConnection("127.0.0.1", int(app.port), timeout=60)
-    headers = {"X-Token": app.token, "Content-Type": "application/json"}
-    body = json.dumps({"tab": "a", "content": content, "grids": 1})
-    connection.request("POST", "/api/run", body, headers)
-    answer = connection.getresponse()
-    while "run-in" not in json.loads(answer.readline())["progress"]:
-        pass
-    connection.close()
-    began = time.perf_counter()
-    app.post("run", tab="a", content=worn_content(app), grids=1)
-    assert time.perf_counter() - began < 10
 
 
 def test_a_file_that_was_taken_leaves_nothing_behind(app):
