@@ -3,7 +3,6 @@
 import json
 import math
 import re
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -17,7 +16,7 @@ from restitution.errors import NotConvergedError
 from restitution.results.writer import ResultsFolder
 from restitution.runs import depths as depths_module
 from restitution.runs.companion_curves import curve_of
-from restitution.runs.companions import Companions, ScaleCurves, coarser_contact
+from restitution.runs.companions import Companions
 from restitution.runs.convergence import run_convergence
 from restitution.runs.ensemble import run_realisations
 from restitution.runs.error_budget import (
@@ -246,24 +245,6 @@ def test_the_surface_error_covers_the_mean_of_all_surfaces(surfaces):
     assert 0.95 < np.mean(held) < 0.995
 
 
-def test_a_curve_is_not_extrapolated():
-    work = np.array([1.0, 10.0, 100.0])
-    for first in (0.9, 1.0):  # an impact without loss changes the interpolation
-        curve = WorkCurve(work, work * np.array([first, 0.7, 0.6]) ** 2, NONE[:3])
-        found = curve.at(np.array([0.1, 1.0, 10.0, 1e4]))
-        assert found == approx([first, first, 0.7, 0.6], rel=1e-12)
-    assert np.isnan(WorkCurve(*np.empty((3, 0))).at(np.array([1.0]))).all()
-
-
-def test_between_impacts_that_stick_and_that_do_not_a_constant_loss_is_interpolated():
-    """COR is 0 up to a work of 2 J, the energy that adhesion dissipates, and then rises steeply."""
-    work = np.array([1.0, 10.0, 100.0])
-    curve = WorkCurve(work, work - 2.0, NONE[: work.size])
-    between = np.array([1.9, 2.1, 4.0, 50.0])
-    assert curve.at(between)[0] == 0
-    assert curve.at(between)[1:] == approx(np.sqrt(1 - 2 / between[1:]), rel=1e-9)
-
-
 def test_resolved_contacts_keep_a_small_error_of_the_grid():
     """The floor is 10 % of the error of 90 % of contacts with such patches: 0.05 at 30 nodes."""
     error, _ = widened_error(0.0, 0.0, 0.0, one(median_patch_nodes=30.0), 0.0)
@@ -361,51 +342,3 @@ def test_another_body_may_be_the_softer_one_at_an_end_of_the_spread(tmp_path):
     rows, _ = run(text, tmp_path / "out")
     assert rows[0]["material_error"] > 0
     assert rows[0]["total_error"] >= rows[0]["material_error"] - 1e-12
-
-
-COHESIVE = """\
-first = { material = "silica", radius = "2 um" }
-[interface]
-work_of_adhesion = "0.05 J/m^2"
-yield_pressure = "1.5 GPa"
-adhesion = "cohesive"
-[roughness]
-kind = "gaussian"
-rms = "0.6 nm"
-correlation_length = "30 nm"
-seed = 1
-[grid]
-nodes = 64
-spacing = "3 nm"
-[indentation]
-values = ["1 nm"]
-"""
-
-
-def test_other_curves_of_a_cohesive_contact_are_compared_at_the_same_impacts(tmp_path):
-    """Three impacts of five give the scatter, close to that with all of them."""
-    companions = Companions(parse_case(COHESIVE), tmp_path, [1e-9, 1.5e-9, 2e-9, 2.5e-9, 3e-9])
-    work = companions.own.work[-6:-1]
-    assert companions.reference.work == approx(work[::2], rel=1e-12)
-    assert companions.weaker(np.ones(5)) is companions.reference
-    contact = coarser_contact(companions.case.variant(1).contact(tmp_path))
-    other, full = companions.curve(contact), curve_of(contact, companions.depths, "path")
-    assert other.work[0] < work[0] < work[-1] <= other.work[-1]
-    assert other.at(work) == approx(full.at(work), abs=0.01)
-    assert other.ratio(work) == approx(full.ratio(work), abs=0.02)
-    assert other.pull_off_at(work) == approx(full.pull_off_at(work), rel=0.08)
-
-
-def test_waves_that_are_not_short_beside_the_contact_have_an_error():
-    def curve(e):
-        return WorkCurve(np.array([1.0, 10.0]), e**2 * np.array([1.0, 10.0]), np.zeros(2))
-
-    own, without = curve(0.8), curve(0.9)
-    scales = ScaleCurves(own, (), None, without, edge=1.0, wavelength=2e-6)
-    work, area = np.array([2.0, 5.0]), math.pi * np.array([1e-6, 4e-6]) ** 2
-    errors = scales.separation_error(work, area)
-    assert errors[0] == approx(4 * errors[1])
-    assert errors[1] == approx(0.25 * 0.5 * 0.1, rel=1e-3)
-    growing = replace(scales, weaker=own).separation_error(work, area)
-    assert growing[1] == approx(math.hypot(0.125, 0.5) * 0.1, rel=1e-3)
-    assert not replace(scales, without=None).separation_error(work, area).any()
