@@ -1,15 +1,7 @@
-"""What all exports share: the pairs at one velocity, comments, and templates.
-
-Notes and comments are plain ASCII without quotes, braces or line-continuation characters, so that a
-name or title given by the user cannot end a comment.
-"""
+"""What all exports share: the pairs at one velocity, their notes, and templates."""
 
 from __future__ import annotations
 
-import re
-import textwrap
-import unicodedata
-from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache, cached_property, partial
 from importlib.metadata import PackageNotFoundError, version
@@ -29,9 +21,19 @@ from restitution.dem.pair import (
     pull_off_force,
 )
 from restitution.dem.pair_table import PairTable
+from restitution.dem.text import (
+    comment_text,
+    commented,
+    identifier,
+    number,
+    numbers,
+    real,
+    wrapped,
+    xml_safe,
+)
 from restitution.dem.units import SI, Units
 from restitution.display import quantity
-from restitution.errors import CaseError, one_line
+from restitution.errors import CaseError
 from restitution.laws.law import Law
 from restitution.laws.particle import Particle
 
@@ -47,12 +49,7 @@ SCRIPT = "match_velocity.py"
 _ROUNDS = 6  # largest number of runs of the simulation
 _TOLERANCE = 0.005  # change of e below which the script stops
 _SAMPLES = 4  # number of table intervals between two neighbouring computed velocities
-_WIDTH = 98
 _AGAIN = "Export again for another velocity."
-_SIGNS = str.maketrans({'"': "'", "`": "'", "\\": "/", "&": "+", "{": "(", "}": ")", "$": "%"})
-_PLAIN = str.maketrans("–—−‐‑’‘“”·×≈→µ", "-----''''.x~>u") | str.maketrans(
-    {"±": "+/-", "≤": "<=", "≥": ">=", "…": "...", "ß": "ss", "⁄": "/"}
-)
 
 
 @dataclass(frozen=True)
@@ -317,51 +314,6 @@ def density_of(particle: Particle) -> float:
     return particle.density
 
 
-def identifier(particle: Particle, number: int) -> str:
-    """A name of letters, digits and `_`, ending in `number`, that every DEM code accepts."""
-    word = (
-        re.sub(r"[^A-Za-z0-9]+", "_", comment_text(particle.name))
-        .strip("_")[:24]
-        .rstrip("_")
-        .lower()
-        or "type"
-    )
-    return f"{word if word[0].isalpha() else f'p_{word}'}_{number}"
-
-
-def commented(lines: Iterable[str], sign: str) -> str:
-    """`lines` as comments that begin with `sign`."""
-    return "\n".join(f"{sign} {line}".rstrip() for line in lines)
-
-
-def _xml_safe(text: str) -> str:
-    return re.sub("-(?=-)", "- ", text)
-
-
-def comment_text(text: str) -> str:
-    """`text` as one line of ASCII that cannot end a comment; Greek letters become their names."""
-    text = unicodedata.normalize("NFKD", one_line(text).translate(_PLAIN)).translate(_PLAIN)
-    text = "".join(map(_ascii, text)).translate(_SIGNS)
-    return text.replace("*/", "* /").replace("/*", "/ *").replace("??/", "?? /")
-
-
-def number(value: float) -> str:
-    """Format `value` in a notation that every code reads."""
-    return f"{value:.9g}"
-
-
-def _real(value: float) -> str:
-    """A number that readers of JSON cannot take for an integer."""
-    text = number(value)
-    return text if any(sign in text for sign in ".e") else f"{text}.0"
-
-
-def _numbers(values: Iterable[float]) -> str:
-    return textwrap.fill(
-        ", ".join(map(number, values)), _WIDTH, initial_indent="    ", subsequent_indent="    "
-    )
-
-
 def program_version() -> str:
     """The installed version of this package, or "(version unknown)"."""
     try:
@@ -382,10 +334,10 @@ def _environment() -> Environment:
     environment.filters |= {
         "number": number,
         "comment_text": comment_text,
-        "numbers": _numbers,
-        "real": _real,
+        "numbers": numbers,
+        "real": real,
         "quantity": quantity,
-        "xml_safe": _xml_safe,
+        "xml_safe": xml_safe,
     }
     environment.globals |= {
         "time_step": "the elastic contact time t_c = 2.87 (m*^2/(R* E*^2 V))^(1/5), for an "
@@ -405,24 +357,3 @@ def _failure(law: Law, e: float) -> str:
     if law.sticks_below is None:
         return "sticks (e = 0)"
     return f"sticks (e = 0) below {law.sticks_below:.4g} m/s, so also"
-
-
-def wrapped(lines: Iterable[str]) -> list[str]:
-    """Lines of ASCII of at most `_WIDTH` characters, for comments."""
-    folded = []
-    for line in map(comment_text, lines):
-        indent = " " * (len(line) - len(line.lstrip()) + 4)
-        folded += textwrap.wrap(line, _WIDTH, subsequent_indent=indent) or [""]
-    return folded
-
-
-def _ascii(c: str) -> str:
-    if c.isascii():
-        return c
-    if unicodedata.combining(c):
-        return ""
-    name = unicodedata.name(c, "")
-    if name.startswith("GREEK"):
-        word = name.split(" WITH ")[0].rsplit(" ", 1)[-1]
-        return word.lower() if "SMALL" in name else word.capitalize()
-    return "?"

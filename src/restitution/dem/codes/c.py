@@ -14,9 +14,10 @@ import math
 from typing import Any
 
 from restitution.dem.contact_table import contact_table
-from restitution.dem.export_common import Export, commented, wrapped
+from restitution.dem.export_common import Export
 from restitution.dem.pair import STIFFNESS_SHARE
 from restitution.dem.pair_table import PairTable
+from restitution.dem.text import commented, wrapped
 
 CODE = "C"
 HEADER, DRIVER = "restitution_contact.h", "collide.c"

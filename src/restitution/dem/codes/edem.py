@@ -20,9 +20,10 @@ import math
 import numpy as np
 
 from restitution.dem.damped_adhesion import DampedAdhesion, fit_damping
-from restitution.dem.export_common import NOT_RUN, Export, commented, identifier, number
+from restitution.dem.export_common import NOT_RUN, Export
 from restitution.dem.pair import ExportedPair, pull_off_force
 from restitution.dem.pair_table import PairTable
+from restitution.dem.text import commented, identifier, number
 from restitution.laws.law import Array, Law
 from restitution.results.writer import table_text
 from restitution.theory import EEPA, JKR

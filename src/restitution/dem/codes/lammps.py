@@ -35,10 +35,11 @@ from functools import partial
 
 from restitution.dem.codes.lammps_mdr import mdr_offers
 from restitution.dem.damping import hertz_damping, hertz_restitution_at
-from restitution.dem.export_common import SCRIPT, STEPS, Export, number
+from restitution.dem.export_common import SCRIPT, STEPS, Export
 from restitution.dem.own_laws import OwnLaw, constant, fitted, viscoelastic
 from restitution.dem.pair import STIFFNESS_SHARE, ExportedPair
 from restitution.dem.pair_table import PairTable
+from restitution.dem.text import number
 from restitution.dem.units import SI, Units
 
 CODE = "LAMMPS"

@@ -25,9 +25,10 @@ from restitution.dem.damped_adhesion import (
     misfit,
     require_adhesion,
 )
-from restitution.dem.export_common import Export, commented, wrapped
+from restitution.dem.export_common import Export
 from restitution.dem.pair import ExportedPair
 from restitution.dem.pair_table import PairTable
+from restitution.dem.text import commented, wrapped
 from restitution.dem.units import SI, Units
 
 CODE = "LAMMPS"

@@ -14,9 +14,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from restitution.dem.export_common import commented, wrapped
 from restitution.dem.notes import numbers
 from restitution.dem.pair import ExportedPair
+from restitution.dem.text import commented, wrapped
 from restitution.laws.law import FittedLaw
 
 NAME = "lammps-mdr"

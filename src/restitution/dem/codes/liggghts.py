@@ -12,9 +12,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from restitution.dem.export_common import SCRIPT, STEPS, Export, number
+from restitution.dem.export_common import SCRIPT, STEPS, Export
 from restitution.dem.pair import FRICTION, ExportedPair
 from restitution.dem.pair_table import PairTable
+from restitution.dem.text import number
 
 CODE = "LIGGGHTS"
 LOWEST = 0.0501  # LIGGGHTS stops with "0.05 < coefficientRestitution <= 1 required"

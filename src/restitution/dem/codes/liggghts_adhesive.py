@@ -20,8 +20,9 @@ from restitution.dem.damped_adhesion import (
     misfit,
     require_adhesion,
 )
-from restitution.dem.export_common import Export, commented, number, wrapped
+from restitution.dem.export_common import Export
 from restitution.dem.pair_table import PairTable
+from restitution.dem.text import commented, number, wrapped
 
 # Measured with lactose of 2 um from 1.2 times its sticking velocity on.
 _ACCURACY = "Then e is within 0.01 of that with smaller steps."

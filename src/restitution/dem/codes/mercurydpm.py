@@ -14,10 +14,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from restitution.dem.export_common import NOT_RUN, Export, commented, number, wrapped
+from restitution.dem.export_common import NOT_RUN, Export
 from restitution.dem.own_laws import OwnLaw, constant, fitted
 from restitution.dem.pair import FRICTION, ExportedPair, shear_modulus
 from restitution.dem.pair_table import PairTable
+from restitution.dem.text import commented, number, wrapped
 
 CODE = "MercuryDPM"
 SETTING = (

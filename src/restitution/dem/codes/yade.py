@@ -24,10 +24,11 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
-from restitution.dem.export_common import Export, commented, density_of, law_points, wrapped
+from restitution.dem.export_common import Export, density_of, law_points
 from restitution.dem.own_laws import OwnLaw, constant
 from restitution.dem.pair import FRICTION, STIFFNESS_SHARE, ExportedPair, contact_time
 from restitution.dem.pair_table import PairTable
+from restitution.dem.text import commented, wrapped
 from restitution.laws.particle import Particle
 
 CODE = "YADE"
