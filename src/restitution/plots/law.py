@@ -12,7 +12,7 @@ from restitution.curve.columns import array
 from restitution.curve.point import Point
 from restitution.display import quantity
 from restitution.laws.law import Law
-from restitution.plots.cor import IMPACT_VELOCITY, Abscissa, bars, cor_chart
+from restitution.plots.cor import IMPACT_VELOCITY, Abscissa, bars, cor_chart, onset
 from restitution.plots.figure import (
     BLUE,
     DASHED,
@@ -38,16 +38,16 @@ if TYPE_CHECKING:  # only `restitution fit` needs the solver
 # Colour, dashes and width of the line of each law. Lines that often coincide at COR = 1 differ in
 # width.
 LAW_LINES: dict[str, tuple[str, Dash, float]] = {
-    "hertz": ("#bfbfbf", SOLID, 5.0),
-    "sticking": ("#e69f00", SOLID, 3.2),
+    "hertz": ("#8f8f8f", SOLID, 5.0),
+    "sticking": ("#b37d00", SOLID, 3.2),
     "thornton-ning": ("#000000", SOLID, 1.4),
     "thornton-ning-force": ("#009e73", (8, 2), 1.4),
-    "johnson": ("#cc79a7", (10, 1.5), 1.6),
+    "johnson": ("#c8609a", (10, 1.5), 1.6),
     "mdr": ("#000080", (5, 1, 1, 1), 1.4),
     "lammps-mdr": ("#000080", (5, 1, 1, 1), 1.4),
-    "constant": ("#e3d5ae", SOLID, 3.2),
+    "constant": ("#a58a40", SOLID, 3.2),
     "walton-braun": ("#8c564b", DASHED, 1.2),
-    "luding": ("#56b4e9", (3, 1, 1, 1, 1, 1), 1.6),
+    "luding": ("#2a9db0", (3, 1, 1, 1, 1, 1), 1.6),
     "eepa": ("#808000", (2, 3), 1.4),
     "brilliantov": ("#d55e00", (7, 1, 2, 1), 1.2),
 }
@@ -148,6 +148,7 @@ def _line(law: Law, place: int | None) -> Line:
     """A line with the `place`th style and its own entry in the legend; grey if `place` is None."""
     name = f"R* = {quantity(law.radius, 'm')}"
     V, e = law.column("velocity"), law.column("restitution")
+    V, e = Points(V, e, via=onset(V, e)).line()
     if place is None:
         return Line(V, e, "R* between these", name=name, color=GREY)
     dashes, color = divmod(place, len(PALETTE))

@@ -1,0 +1,25 @@
+"""How the ticks of an axis are labelled, in files and on pages."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from restitution.plots.figure import Axis
+
+Labels = Literal["plain", "prefixes", "powers"]
+"""0.002, 0.005, 0.01; 1 µN, 10 µN, 100 µN; or powers of ten."""
+
+_PREFIXED = ("m/s", "N", "m", "Pa", "J")  # units that take an SI prefix
+_PLAIN = (0.9e-3, 1e4)  # a logarithmic axis within this range has plain numbers
+_LARGEST = (1e-2, 1e4)  # and a linear one whose largest number is within this range
+
+
+def labels_of(axis: Axis, low: float, high: float) -> Labels:
+    """The labels of an axis that spans `low` to `high`."""
+    if axis.scale == "log":
+        plain = _PLAIN[0] <= low and high <= _PLAIN[1]
+    else:
+        plain = _LARGEST[0] <= max(abs(low), abs(high)) <= _LARGEST[1]
+    if plain:
+        return "plain"
+    return "prefixes" if axis.unit in _PREFIXED else "powers"
