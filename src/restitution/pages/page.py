@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import base64
 import gzip
+import json
 import math
 import re
 from collections.abc import Iterator, Sequence
@@ -21,7 +22,15 @@ from restitution.plots import interactive, library
 from restitution.plots.figure import Figure, Map, legend_entries
 from restitution.results.writer import replace_file
 
-Cell = str | float | int | None
+
+@dataclass(frozen=True)
+class ChosenCell:
+    """A cell whose text depends on the option that the reader selects (`Choice`)."""
+
+    number: int
+
+
+Cell = str | float | int | ChosenCell | None
 
 
 @dataclass(frozen=True)
@@ -55,11 +64,17 @@ class Drawing:
 
 @dataclass(frozen=True)
 class Choice:
-    """Tables of which one is shown: the reader selects it by its `label`, at first the `chosen`."""
+    """Tables with cells that change with an option, which the reader selects by its `label`.
 
-    title: str
+    All tables but the first are folded.
+    `texts[option][number]` is the text of the cells `ChosenCell(number)`; `chosen` is the option
+    shown at first.
+    """
+
     label: str
-    tables: Sequence[tuple[str, PageTable]]
+    options: Sequence[str]
+    texts: Sequence[Sequence[str]]
+    tables: Sequence[PageTable]
     chosen: int = 0
 
 
@@ -69,7 +84,8 @@ class Answer:
 
     line: str = ""
     facts: Sequence[str] = ()
-    table: PageTable | Choice | None = None
+    table: PageTable | None = None
+    choice: Choice | None = None
 
 
 @dataclass(frozen=True)
@@ -101,14 +117,20 @@ def write_page(path: Path, page: Page) -> Path:
     specs: list[str] = []
     plots = {id(drawing): list(_plots(drawing.figure, specs)) for drawing in drawings}
     environment.filters |= {"cell": _cell, "numeric": _numeric}
+    texts = page.answer.choice.texts if page.answer.choice else []
     text = environment.get_template("page.html").render(
         page=page,
         plots=lambda drawing: plots[id(drawing)],
         library=base64.b64encode(library.compressed()).decode(),
-        figures=base64.b64encode(gzip.compress(f"[{','.join(specs)}]".encode(), 9)).decode(),
+        figures=_packed(f"[{','.join(specs)}]"),
+        texts=_packed(json.dumps(texts)),
     )
     replace_file(path, lambda to: to.write_text(text, encoding="utf-8"))
     return path
+
+
+def _packed(text: str) -> str:
+    return base64.b64encode(gzip.compress(text.encode(), 9)).decode()
 
 
 def _plots(figure: Figure, specs: list[str]) -> Iterator[dict[str, Any]]:

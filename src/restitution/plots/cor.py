@@ -46,7 +46,7 @@ def cor_axis(series: Sequence[Series]) -> Axis:
     return Axis(
         "coefficient of restitution",
         low=-_MARGIN if values.min() <= 0 else float(low),
-        high=float(high) if high < 1 else 1.05,
+        high=float(high) if high < 1 else 1 + _MARGIN,
     )
 
 

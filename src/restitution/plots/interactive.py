@@ -25,7 +25,7 @@ from restitution.plots.figure import (
     has_open,
     legend_entries,
 )
-from restitution.plots.ticks import labels_of
+from restitution.plots.ticks import Labels, label, labels_of, power
 
 _MOST_PIXELS = 320  # largest number of pixels of a map along each axis; a larger map is thinned
 # Kept are: zoom, pan, the whole figure again, and an image file.
@@ -47,6 +47,7 @@ def draw(panel: Chart | Map, figure: Figure) -> Plot:
             "y": -0.28,
             "yanchor": "top",
             "title": {"text": _escaped(figure.legend_title), "side": "top"},
+            "tracegroupgap": 0,
         },
         "font": {"family": "system-ui, sans-serif", "size": 13},
         "hovermode": "closest",
@@ -246,9 +247,7 @@ def _axis(axis: Axis, numbers: Array) -> dict[str, Any]:
     elif ends != [None, None]:  # Plotly loses a range with one fixed end when the page is resized
         settings["autorangeoptions"] = dict(zip(("minallowed", "maxallowed"), ends, strict=True))
     known = numbers[np.isfinite(numbers) & ((numbers > 0) | (axis.scale != "log"))]
-    low, high = (
-        (float(known.min()), float(known.max())) if known.size else (1.0, 1.0)
-    )
+    low, high = (float(known.min()), float(known.max())) if known.size else (1.0, 1.0)
     low, high = (low if axis.low is None else axis.low), (high if axis.high is None else axis.high)
     return settings | _tick_labels(axis, low, high)
 
@@ -260,11 +259,23 @@ def _tick_labels(axis: Axis, low: float, high: float) -> dict[str, Any]:
         settings = {"exponentformat": "SI", "minexponent": 0, "ticksuffix": _escaped(axis.unit)}
     elif labels == "powers":
         settings = {"exponentformat": "power"}
-    if axis.scale == "log":
-        settings["minorloglabels"] = "complete"
-        if 1 <= math.log10(high / low) <= _DECADES:
-            settings["dtick"] = "D2"
+    span = math.log10(high / low) if axis.scale == "log" else 0.0
+    if span >= 1:
+        # Explicit, because Plotly draws the labels between powers of ten in another size.
+        step = math.ceil(span / _TICKS)
+        decades = range(math.floor(math.log10(low)) - 1, math.ceil(math.log10(high)) + 2, step)
+        digits = (1, 2, 5) if span <= _DECADES else (1,)
+        values = [float(f"{digit}e{k}") for k in decades for digit in digits]
+        settings |= {"tickvals": values, "ticktext": [_tick(v, labels, axis.unit) for v in values]}
     return settings
+
+
+def _tick(value: float, labels: Labels, unit: str) -> str:
+    if labels != "powers":
+        return _escaped(label(value, labels, unit))
+    exponent, digits = power(value)
+    times = "" if digits == "1" else f"{digits}×"
+    return f"{times}10<sup>{exponent}</sup>".replace("-", "−")
 
 
 def _dashes(dash: Dash, width: float) -> str:

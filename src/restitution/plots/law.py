@@ -12,7 +12,7 @@ from restitution.curve.columns import array
 from restitution.curve.point import Point
 from restitution.display import quantity
 from restitution.laws.law import Law
-from restitution.plots.cor import IMPACT_VELOCITY, Abscissa, bars, cor_chart, onset
+from restitution.plots.cor import IMPACT_VELOCITY, Abscissa, bars, cor_axis, cor_chart, onset
 from restitution.plots.figure import (
     BLUE,
     DASHED,
@@ -23,6 +23,7 @@ from restitution.plots.figure import (
     SYMBOLS,
     Array,
     Band,
+    Chart,
     Dash,
     Figure,
     Line,
@@ -121,15 +122,19 @@ def theory_figure(
 _MOST_ENTRIES = 2 * len(PALETTE)  # each colour with two kinds of lines
 
 
-def mixture_figure(title: str, laws: Sequence[Law]) -> Figure:
+def mixture_figure(
+    title: str, laws: Sequence[Law], beside: Sequence[Law] | None = None
+) -> Figure:
     """Plot COR: a chart for every pair of materials, with a line for every pair of sizes.
 
-    In a chart of more than `_MOST_ENTRIES` lines, grey lines share one entry of the legend.
+    In a chart of more than `_MOST_ENTRIES` lines, grey lines share one entry of the legend. All
+    charts have the axis of COR that spans the lines `beside`, by default their own.
     """
     families = families_of(laws)
     names = [f"{first} on {second}" if len(families) > 1 else "" for first, second in families]
+    axis = cor_axis(_lines(laws if beside is None else beside))
     charts = [
-        cor_chart(IMPACT_VELOCITY.axis, _lines(members), name)
+        Chart(IMPACT_VELOCITY.axis, axis, _lines(members), name)
         for name, members in zip(names, families.values(), strict=True)
     ]
     return Figure(title, charts)

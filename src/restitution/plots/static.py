@@ -18,7 +18,6 @@ from matplotlib.figure import Figure as Drawing
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, ScalarFormatter
 
-from restitution.display import quantity
 from restitution.plots.figure import (
     Array,
     Band,
@@ -34,7 +33,7 @@ from restitution.plots.figure import (
     legend_entries,
 )
 from restitution.plots.figure import Axis as Described
-from restitution.plots.ticks import Labels, labels_of
+from restitution.plots.ticks import Labels, label, labels_of, power
 from restitution.results.writer import replace_file
 
 Format = Literal["png", "svg", "pdf"]
@@ -151,7 +150,7 @@ def _set_linear_ticks(axis: Axis, described: Described) -> None:
     axis.set_major_locator(MaxNLocator(_TICKS, steps=(1, 2, 5, 10)))
     if labels_of(described, *axis.get_view_interval()) == "prefixes":
         unit = described.unit
-        axis.set_major_formatter(FuncFormatter(lambda value, _: _prefixed(value, unit)))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: label(value, "prefixes", unit)))
         return
     formatter = ScalarFormatter(useMathText=True)
     formatter.set_powerlimits((-3, 4))
@@ -172,17 +171,10 @@ def _set_log_ticks(axis: Axis, described: Described) -> None:
 
 
 def _number(value: float, labels: Labels, unit: str) -> str:
-    if labels == "prefixes":
-        return _prefixed(value, unit)
-    if labels == "plain" or value <= 0:
-        return f"{value:g}"
-    exponent = math.floor(math.log10(value) + 1e-9)
-    digits = f"{value / 10**exponent:.3g}"
+    if labels != "powers" or value <= 0:
+        return label(value, labels, unit)
+    exponent, digits = power(value)
     return rf"$10^{{{exponent}}}$" if digits == "1" else rf"${digits}\times10^{{{exponent}}}$"
-
-
-def _prefixed(value: float, unit: str) -> str:
-    return quantity(value, unit) if value else "0"
 
 
 def _draw_series(axes: Axes, part: Series, handles: dict[str, Any]) -> None:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from typing import Literal
 
+from restitution.display import quantity
 from restitution.plots.figure import Axis
 
 Labels = Literal["plain", "prefixes", "powers"]
@@ -23,3 +25,16 @@ def labels_of(axis: Axis, low: float, high: float) -> Labels:
     if plain:
         return "plain"
     return "prefixes" if axis.unit in _PREFIXED else "powers"
+
+
+def label(value: float, labels: Labels, unit: str) -> str:
+    """The label of one tick with `labels` other than "powers"."""
+    if labels == "prefixes" and value:
+        return quantity(value, unit)
+    return f"{value:g}"
+
+
+def power(value: float) -> tuple[int, str]:
+    """The exponent of ten of a positive number, and the digits before it."""
+    exponent = math.floor(math.log10(value) + 1e-9)
+    return exponent, f"{value / 10**exponent:.3g}"
