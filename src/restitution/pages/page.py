@@ -151,12 +151,16 @@ _NUMBER = re.compile(
 
 
 def _numeric(table: PageTable) -> list[bool]:
-    """Whether each column has numbers alone; they are aligned to the right."""
+    """Whether each column has numbers alone, which are aligned to the right.
+
+    In a table of names and values, the values stand beside their names.
+    """
     columns = list(zip(*table.rows, strict=True)) or [("",)] * len(table.columns)
-    return [
+    numeric = [
         all(not isinstance(cell, str) or _NUMBER.fullmatch(cell) for cell in column)
         for column in columns
     ]
+    return [False, False] if numeric == [False, True] else numeric
 
 
 def _cell(value: Cell) -> str:
