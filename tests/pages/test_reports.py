@@ -137,7 +137,9 @@ def test_the_answer_comes_first_at_any_computed_velocity(reported, case_text, cl
     assert cli("report", page.parent, "--velocity", "0.3 m/s")[0] == 0
     last = bare_law(page.parent).points[-1]
     assert answer(own(page)) == f"e = {e_in_words(last.restitution, last.error)} at 300 mm/s"
-    assert "outside the computed velocities" in refused("report", page.parent, "--velocity", "9 m/s")
+    assert "outside the computed velocities" in refused(
+        "report", page.parent, "--velocity", "9 m/s"
+    )
 
 
 def test_numbers_have_prefixes_and_details_are_folded(reported, case_text):
@@ -153,7 +155,11 @@ def test_numbers_have_prefixes_and_details_are_folded(reported, case_text):
 ADHESIVE = """
 title = "A small rough contact"
 total_error = false
-first = { radius = "5 um", youngs_modulus = "3 GPa", poissons_ratio = 0.35, density = "1050 kg/m^3" }
+[first]
+radius = "5 um"
+youngs_modulus = "3 GPa"
+poissons_ratio = 0.35
+density = "1050 kg/m^3"
 [interface]
 yield_pressure = "elastic"
 work_of_adhesion = "0.05 J/m^2"
@@ -191,7 +197,8 @@ def faults(page, opened):
     checked = page.with_name("checked.html")
     run = f"""<script>{axe.script()}</script><script>
       const drawn = () => document.body.dataset.drawn ? {axe.RUN}.then((faults) => {{
-        document.body.dataset.faults = encodeURIComponent(JSON.stringify(faults)); }}) : setTimeout(drawn, 50);
+        document.body.dataset.faults = encodeURIComponent(JSON.stringify(faults));
+      }}) : setTimeout(drawn, 50);
       drawn();</script>"""
     checked.write_text(page.read_text().replace("</body>", run + "</body>"))
     found = re.search(r'data-faults="([^"]*)"', opened(checked)[0])

@@ -1,4 +1,4 @@
-"""Names of derived quantities for people, and the units in which `restitution check` prints them."""
+"""Names of derived quantities for people, and the units in which they are printed."""
 
 from __future__ import annotations
 

@@ -148,5 +148,7 @@ def _surface(run: RunResults) -> str:
     statistics = run.summary.get("surface_statistics", {})
     height = statistics.get("Sq_m")
     rough = f"Sq {si(height, 'm')}" if height else "smooth"
-    means = f", mean of {counted(run.surfaces, 'surface')}" if isinstance(run, EnsembleResults) else ""
+    means = (
+        f", mean of {counted(run.surfaces, 'surface')}" if isinstance(run, EnsembleResults) else ""
+    )
     return f"{rough}{means}"

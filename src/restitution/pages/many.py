@@ -12,6 +12,7 @@ from restitution.display import quantity
 from restitution.errors import DomainError
 from restitution.laws.law import Estimate, Law
 from restitution.laws.law_files import read_laws
+from restitution.laws.particle import Particle
 from restitution.pages.answer import body_in_words, middle_of, round_velocities
 from restitution.pages.methods import methods
 from restitution.pages.page import (
@@ -67,7 +68,9 @@ def write_study_page(out: Path) -> Path:
 
 
 def _range_of(cases: Sequence[StoredCase]) -> str:
-    cor = [e for case in cases for point in case.curve.points if math.isfinite(e := point.restitution)]
+    cor = [
+        e for case in cases for point in case.curve.points if math.isfinite(e := point.restitution)
+    ]
     return f"e from {min(cor):.2f} to {max(cor):.2f}" if cor else ""
 
 
@@ -183,7 +186,7 @@ def _answer(laws: Sequence[Law], velocity: float | None) -> Answer:
         laws[0].at(velocities[chosen])  # raises DomainError, which names the computed velocities
     first = dict.fromkeys(body for law in laws for body in (law.first, law.second) if not body.wall)
     bodies = dict.fromkeys([*first, *(body for law in laws for body in (law.first, law.second))])
-    number = {law.first: {} for law in laws} | {law.second: {} for law in laws}
+    number: dict[Particle, dict[Particle, ChosenCell]] = {body: {} for body in bodies}
     for k, law in enumerate(laws):
         number[law.first][law.second] = number[law.second][law.first] = ChosenCell(k)
     notes = [

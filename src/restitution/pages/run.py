@@ -19,7 +19,7 @@ from restitution.losses.losses import NAMES
 from restitution.pages.answer import answer_of
 from restitution.pages.methods import methods
 from restitution.pages.page import Cell, Drawing, Listing, Page, PageTable, write_page
-from restitution.pages.run_in import run_in_parts
+from restitution.pages.run_in import run_in_drawing, run_in_parts
 from restitution.pages.words import column_unit, table_of
 from restitution.plots.cor import Abscissa
 from restitution.plots.oblique import has_oblique, oblique_figure
@@ -50,8 +50,8 @@ def write_run_page(out: Path, velocity: float | None = None) -> Path:
         if run.oblique and has_oblique(results):
             parts.append(_oblique_drawing(results, run.oblique))
         if run.run_in:
-            worn, *others = run_in_parts(run.run_in, run.impacts, summary["run_in"])
-            top, parts = [worn, top[0]], [*others, *top[1:], *parts]
+            others = run_in_parts(run.impacts, summary["run_in"])
+            top, parts = [run_in_drawing(run.run_in), top[0]], [*others, *top[1:], *parts]
         if has_patches(results):
             parts.append(_patches(results))
         if has_map(results):

@@ -23,21 +23,23 @@ _COLUMNS = {
 }
 
 
-def run_in_parts(
-    points: Sequence[RunInPoint],
-    impacts: Sequence[Sequence[RepeatedImpact]],
-    summary: Mapping[str, Any],
-) -> Iterator[Drawing | PageTable]:
-    """The figures and tables of a run-in, whose entry of `summary.json` is `summary`."""
+def run_in_drawing(points: Sequence[RunInPoint]) -> Drawing:
+    """The figure of COR after many impacts."""
     rows = [[getattr(point, name) for name in _COLUMNS.values()] for point in points]
     last = max(point.coverage for point in points)
-    yield Drawing(
+    return Drawing(
         "Restitution after many impacts",
         run_in_figure(points),
         f"Mean coefficient of restitution against impact velocity up to coverage {last:.3g}",
         f"Means over {points[0].places:.0f} places; the bands hold 90 % of the places.",
         PageTable("Restitution at each coverage", list(_COLUMNS), rows),
     )
+
+
+def run_in_parts(
+    impacts: Sequence[Sequence[RepeatedImpact]], summary: Mapping[str, Any]
+) -> Iterator[Drawing | PageTable]:
+    """The impacts and the surfaces after them; `summary` is their entry of `summary.json`."""
     yield Drawing(
         "Restitution during the impacts",
         impacts_figure(impacts),

@@ -140,7 +140,11 @@ def _traces(part: Band | Line | Points, chart: Chart) -> list[dict[str, Any]]:
         f"%{{y:.4g}} {_escaped((y or chart.y).unit)}<extra>{name}</extra>",
     }
     if isinstance(part, Line):
-        line = {"color": part.color, "width": part.width + 0.3, "dash": _dashes(part.dash, part.width + 0.3)}
+        line = {
+            "color": part.color,
+            "width": part.width + 0.3,
+            "dash": _dashes(part.dash, part.width + 0.3),
+        }
         trace |= {"mode": "lines" if np.size(part.x) > 1 else "markers", "line": line}
         trace |= {"line_shape": "hvh"} if part.step else {}
         return [trace | ({"yaxis": "y2"} if part.right else {})]
@@ -155,8 +159,8 @@ def _traces(part: Band | Line | Points, chart: Chart) -> list[dict[str, Any]]:
     traces = [trace]
     if part.joined and part.via is not None:
         # Its own trace, so that the markers keep their numbers.
-        x, y = part.line()
-        line = {"x": x, "y": y, "mode": "lines", "line": trace["line"], "hoverinfo": "skip"}
+        along, up = part.line()
+        line = {"x": along, "y": up, "mode": "lines", "line": trace["line"], "hoverinfo": "skip"}
         traces.insert(0, line | {"name": name, "entry": ""})
         trace["line"] = {"color": part.color, "width": 0}
     if part.error is not None and has_error(part):

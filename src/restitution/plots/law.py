@@ -122,9 +122,7 @@ def theory_figure(
 _MOST_ENTRIES = 2 * len(PALETTE)  # each colour with two kinds of lines
 
 
-def mixture_figure(
-    title: str, laws: Sequence[Law], beside: Sequence[Law] | None = None
-) -> Figure:
+def mixture_figure(title: str, laws: Sequence[Law], beside: Sequence[Law] | None = None) -> Figure:
     """Plot COR: a chart for every pair of materials, with a line for every pair of sizes.
 
     In a chart of more than `_MOST_ENTRIES` lines, grey lines share one entry of the legend. All

@@ -1,4 +1,4 @@
-"""The library that draws figures on pages: plotly.js with two kinds of traces (`plotly/bundle.mjs`)."""
+"""The library that draws figures on pages: a part of plotly.js (`plotly/bundle.mjs`)."""
 
 from __future__ import annotations
 
