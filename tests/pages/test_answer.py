@@ -113,7 +113,7 @@ def test_a_velocity_that_no_pair_has_is_refused(mixture):
         mixture(2, 30.0)
 
 
-def test_a_large_mixture_has_a_page_of_under_1_MB(mixture):
+def test_a_large_mixture_has_a_page_of_under_one_megabyte(mixture):
     page, laws = mixture(19)
     assert len(laws) == 209
     assert page.stat().st_size < 2**20

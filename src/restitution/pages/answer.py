@@ -65,13 +65,13 @@ def answer_of(run: RunResults, velocity: float | None) -> Answer:
                 "yes" if estimate.resolved else "no",
             ]
         )
-    which = "total error" if run.case.total_error else "error of the solver"
+    which = "total" if run.case.total_error else "solver"
     return Answer(
         _line(law.at(chosen).restitution, _error(run, law, chosen), chosen),
         facts,
         PageTable(
             "Restitution at three velocities",
-            ["impact velocity", f"e ± {which}", "± error of the model", "resolved"],
+            ["impact velocity", f"e ± {which}", "± model", "resolved"],
             rows,
         ),
     )

@@ -50,7 +50,7 @@ def write_run_page(out: Path, velocity: float | None = None) -> Path:
         if run.oblique and has_oblique(results):
             parts.append(_oblique_drawing(results, run.oblique))
         if run.run_in:
-            others = run_in_parts(run.impacts, summary["run_in"])
+            _, *others = run_in_parts(run.run_in, run.impacts, summary["run_in"])
             top, parts = [run_in_drawing(run.run_in), top[0]], [*others, *top[1:], *parts]
         if has_patches(results):
             parts.append(_patches(results))

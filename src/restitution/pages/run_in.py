@@ -37,9 +37,12 @@ def run_in_drawing(points: Sequence[RunInPoint]) -> Drawing:
 
 
 def run_in_parts(
-    impacts: Sequence[Sequence[RepeatedImpact]], summary: Mapping[str, Any]
+    points: Sequence[RunInPoint],
+    impacts: Sequence[Sequence[RepeatedImpact]],
+    summary: Mapping[str, Any],
 ) -> Iterator[Drawing | PageTable]:
-    """The impacts and the surfaces after them; `summary` is their entry of `summary.json`."""
+    """The figures and tables of a run-in, whose entry of `summary.json` is `summary`."""
+    yield run_in_drawing(points)
     yield Drawing(
         "Restitution during the impacts",
         impacts_figure(impacts),

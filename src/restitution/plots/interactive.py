@@ -25,13 +25,12 @@ from restitution.plots.figure import (
     has_open,
     legend_entries,
 )
-from restitution.plots.ticks import Labels, label, labels_of, power
+from restitution.plots.ticks import LINEAR, Labels, digits_within, label, labels_of, power
 
 _MOST_PIXELS = 320  # largest number of pixels of a map along each axis; a larger map is thinned
 # Kept are: zoom, pan, the whole figure again, and an image file.
 _BUTTONS = {"remove": ["lasso2d", "select2d", "zoomIn2d", "zoomOut2d", "autoScale2d"]}
 _TICKS = 7  # largest number of labels of an axis
-_DECADES = 3.0  # a logarithmic axis up to this length has labels at 1, 2 and 5 times powers of ten
 _LAYERS = (Band, Line, Points)  # drawing order of the series, from bottom to top
 
 
@@ -264,11 +263,11 @@ def _tick_labels(axis: Axis, low: float, high: float) -> dict[str, Any]:
     elif labels == "powers":
         settings = {"exponentformat": "power"}
     span = math.log10(high / low) if axis.scale == "log" else 0.0
-    if span >= 1:
+    if span >= LINEAR:
         # Explicit, because Plotly draws the labels between powers of ten in another size.
         step = math.ceil(span / _TICKS)
         decades = range(math.floor(math.log10(low)) - 1, math.ceil(math.log10(high)) + 2, step)
-        digits = (1, 2, 5) if span <= _DECADES else (1,)
+        digits = digits_within(span)
         values = [float(f"{digit}e{k}") for k in decades for digit in digits]
         settings |= {"tickvals": values, "ticktext": [_tick(v, labels, axis.unit) for v in values]}
     return settings

@@ -33,7 +33,7 @@ from restitution.plots.figure import (
     legend_entries,
 )
 from restitution.plots.figure import Axis as Described
-from restitution.plots.ticks import Labels, label, labels_of, power
+from restitution.plots.ticks import LINEAR, Labels, digits_within, label, labels_of, power
 from restitution.results.writer import replace_file
 
 Format = Literal["png", "svg", "pdf"]
@@ -44,12 +44,8 @@ _CHART, _MAP, _SECOND = (6.4, 4.0), (5.6, 4.6), 4.6
 _ROW, _SIDE = 0.2, 2.4
 # Largest number of entries of a legend below the axes; a longer legend is placed at the side.
 _MOST_BELOW = 8
-# Pairs (decades, digits). If a logarithmic axis spans at most `decades` decades, it has labels at
-# `digits` times powers of ten.
-_DIGITS: tuple[tuple[float, tuple[int, ...]], ...] = ((1.0, (1, 2, 3, 5, 7)), (3.0, (1, 2, 5)))
 _DPI = 300  # of PNG files, for print
 _TICKS = 6  # largest number of intervals between the labels of a linear axis
-_LINEAR = 0.5  # a logarithmic axis that spans fewer decades than this has linear ticks
 _MARKERS = {
     "circle": "o",
     "square": "s",
@@ -162,9 +158,9 @@ def _set_log_ticks(axis: Axis, described: Described) -> None:
     low, high = axis.get_view_interval()
     decades = math.log10(high / low) if low > 0 else math.inf
     axis.set_minor_formatter(NullFormatter())
-    if decades < _LINEAR:
+    if decades < LINEAR:
         axis.set_major_locator(MaxNLocator(_TICKS, steps=(1, 2, 5, 10)))
-    elif digits := next((digits for most, digits in _DIGITS if decades <= most), None):
+    elif len(digits := digits_within(decades)) > 1:
         axis.set_major_locator(LogLocator(subs=digits, numticks=100))
     labels, unit = labels_of(described, low, high), described.unit
     axis.set_major_formatter(FuncFormatter(lambda value, _: _number(value, labels, unit)))
