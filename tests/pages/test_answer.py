@@ -67,9 +67,10 @@ def test_names_are_those_of_check():
 def mixture(tmp_path, law):
     """The page of a mixture of beads of different sizes and a wall, from laws made by hand."""
 
-    def make(sizes, velocity=None):
+    def make(sizes, velocity=None, materials=("glass",)):
         ball = law().first
-        beads = [replace(ball, radius=1e-4 * 1.3**k) for k in range(sizes)]
+        radii = [1e-4 * 1.3**k for k in range(sizes)]
+        beads = [replace(ball, name=name, radius=R) for name in materials for R in radii]
         wall = replace(ball, name="drum", radius=None)
         pairs = [(a, b) for k, a in enumerate(beads) for b in (*beads[k:], wall)]
         laws = [law(a, b, at=1 + k / 10) for k, (a, b) in enumerate(pairs)]
@@ -117,6 +118,12 @@ def test_a_large_mixture_has_a_page_of_under_one_megabyte(mixture):
     page, laws = mixture(19)
     assert len(laws) == 209
     assert page.stat().st_size < 2**20
+
+
+def test_a_mixture_of_many_materials_prints_on_two_sheets(mixture, printed):
+    page, laws = mixture(2, materials=("glass", "steel", "lactose", "sand"))
+    assert len({(law.first.name, law.second.name) for law in laws}) == 14
+    assert printed(page) == 2
 
 
 def test_readers_choose_the_velocity(mixture, opened):

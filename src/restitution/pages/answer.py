@@ -89,7 +89,7 @@ def _worn(law: Law, facts: Sequence[str], velocity: float | None) -> Answer:
     chosen = middle_of(velocities) if velocity is None else velocity
     new, last = laws[0].at(chosen), laws[-1].at(chosen)
     rows: list[list[Cell]] = []
-    for V in sorted({*velocities, chosen}):
+    for V in sorted({velocities[0], chosen, velocities[-1]}):
         estimates = [one.at(V) for one in laws]
         rows.append(
             [quantity(V, "m/s"), *(e_in_words(one.restitution, one.error) for one in estimates)]

@@ -19,7 +19,7 @@ from restitution.losses.losses import NAMES
 from restitution.pages.answer import answer_of
 from restitution.pages.methods import methods
 from restitution.pages.page import Cell, Drawing, Listing, Page, PageTable, write_page
-from restitution.pages.run_in import run_in_drawing, run_in_parts
+from restitution.pages.run_in import run_in_parts
 from restitution.pages.words import column_unit, table_of
 from restitution.plots.cor import Abscissa
 from restitution.plots.oblique import has_oblique, oblique_figure
@@ -44,14 +44,16 @@ def write_run_page(out: Path, velocity: float | None = None) -> Path:
     results, summary = run.dataset, run.summary
     top: list[Drawing] = []
     parts: list[PageTable | Drawing | Listing] = []
+    details: list[PageTable | Listing] = []
     if results.sizes["indentation_max"]:
         top = [_restitution(results, abscissa) for abscissa in reversed(abscissae(results))]
         parts.append(_force(results))
         if run.oblique and has_oblique(results):
             parts.append(_oblique_drawing(results, run.oblique))
         if run.run_in:
-            _, *others = run_in_parts(run.run_in, run.impacts, summary["run_in"])
-            top, parts = [run_in_drawing(run.run_in), top[0]], [*others, *top[1:], *parts]
+            worn, impacts, surfaces = run_in_parts(run.run_in, run.impacts, summary["run_in"])
+            top, parts = [worn, top[0]], [impacts, *top[1:], *parts]
+            details = [surfaces]
         if has_patches(results):
             parts.append(_patches(results))
         if has_map(results):
@@ -66,6 +68,7 @@ def write_run_page(out: Path, velocity: float | None = None) -> Path:
         top=top,
         parts=parts,
         details=[
+            *details,
             *groups(summary),
             _diagnostics(results, summary),
             Listing("Case file", results.attrs["case"]),
