@@ -19,6 +19,7 @@ from restitution.losses.losses import NAMES
 from restitution.pages.methods import methods
 from restitution.pages.page import Cell, Drawing, Listing, Page, PageTable, write_page
 from restitution.pages.run_in import run_in_parts
+from restitution.pages.scans import of_scans
 from restitution.plots.cor import Abscissa
 from restitution.plots.oblique import has_oblique, oblique_figure
 from restitution.plots.run import (
@@ -55,6 +56,7 @@ def write_run_page(out: Path) -> Path:
         if has_maps(out):
             parts.append(maps_drawing(run.maps, results))
     parts += [
+        *of_scans(summary.get("surface", {})),
         _diagnostics(results, summary),
         *groups(summary),
         Listing("Case file", results.attrs["case"]),

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
-from typing import NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
@@ -124,11 +124,30 @@ class JoinedSpectrum:
         q = np.geomspace(2 * math.pi / longest, 2 * math.pi / shortest, 512)
         return float(trapezoid(self.continued(q) * q ** (power + 1), np.log(q))) / (2 * math.pi)
 
-    def uncertainty(self, power: int) -> Array:
-        """Share of each wave number in the uncertain part of ∫ C q^power dq, normalised to 1."""
+    def told(self) -> dict[str, Any]:
+        """The spectrum and its scans as lists of numbers (SI), of measured waves."""
         inside = self.at(self.wave_number) > 0
-        parts = np.where(inside, self.error * self.density * self.wave_number ** (power + 1), 0.0)
-        return np.asarray(parts / parts.sum())
+        curve = _Curve(np.log(self.wave_number), np.log(self.density), self.error)
+        scans = {}
+        for scan in self.spectra:
+            kept = scan.inside(scan.shortest, scan.edge)
+            # Without the response of the scan; C of a profile from C₁ by the ratio of the curve's.
+            C = scan.density / curve.expected(scan) * curve.at(scan.wave_number)
+            scans[scan.name] = {
+                "wave_number": scan.wave_number[kept].tolist(),
+                "density": C[kept].tolist(),
+            }
+        return {
+            "wave_number": self.wave_number[inside].tolist(),
+            "density": self.density[inside].tolist(),
+            "error": self.error[inside].tolist(),
+            "shortest_m": self.shortest,
+            "longest_m": self.longest,
+            "scans": scans,
+            "overlaps": [one._asdict() for one in self.overlaps],
+            "gaps_m": [list(gap) for gap in self.gaps],
+            "notes": list(self.notes),
+        }
 
 
 def join(scans: Sequence[ScanSpectrum], *, bridge: bool = False) -> JoinedSpectrum:

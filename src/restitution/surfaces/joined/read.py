@@ -92,20 +92,19 @@ def read_spectra(path: Path, how: HowToRead) -> Iterator[ScanSpectrum]:
             name = told.name if told.name not in taken else f"{told.name} ({told.member})"
             taken.add(name)
             file = extract(path, told.member, Path(copies))
+            own = replace(
+                how,
+                tip_radius=how.tip_radius or told.tip_radius or None,
+                resolution=how.resolution or told.resolution or None,
+            )
             try:
-                surface = _contained(file, told, how)
+                yield _spectrum(_contained(file, told, how), name, own)
             except SurfaceError as error:
                 reason = str(error).replace(str(file), told.member)
                 raise SurfaceError(f"{path}: {reason}") from error
             finally:
                 if not path.is_dir():
                     file.unlink(missing_ok=True)
-            own = replace(
-                how,
-                tip_radius=how.tip_radius or told.tip_radius or None,
-                resolution=how.resolution or told.resolution or None,
-            )
-            yield _spectrum(surface, name, own)
 
 
 def _read(path: Path, how: HowToRead) -> Surface:

@@ -129,11 +129,6 @@ def _provenance(
         )
     if of_heights is None:
         told.append("heights are normally distributed, because a line scan shows most of them")
-    for one in spectrum.overlaps:
-        told.append(
-            f"C of {one.first} is {one.ratio:.3g} times that of {one.second} from "
-            f"{quantity(one.shortest, 'm')} to {quantity(one.longest, 'm')}"
-        )
     return {
         "source": "twin",
         "kind": f"twin of {len(spectrum.scans)} scans",
@@ -153,7 +148,32 @@ def _provenance(
         "shortest_carried_m": shortest,
         "removed_rms_m": gone_rms,
         "removed_slope": min(gone / slope, 1.0),
+        **_contributions(spectrum),
     }
+
+
+def _contributions(spectrum: JoinedSpectrum) -> dict[str, str | float]:
+    """Entries of the provenance on each scan, and on each overlap of two."""
+    told: dict[str, str | float] = {}
+    for number, scan in enumerate(spectrum.scans, 1):
+        told |= {
+            f"scan_{number}_name": scan.name,
+            f"scan_{number}_kind": "line scan" if scan.line else "height map",
+            f"scan_{number}_edge_m": scan.edge,
+            f"scan_{number}_pixel_m": scan.pixel,
+            f"scan_{number}_shortest_m": scan.shortest,
+            f"scan_{number}_longest_m": scan.longest,
+            f"scan_{number}_ends_at": scan.why,
+            f"scan_{number}_rms_m": scan.rms,
+            f"scan_{number}_slope": scan.slope,
+        }
+    for number, one in enumerate(spectrum.overlaps, 1):
+        told[f"overlap_{number}"] = (
+            f"C of {one.first} is {one.ratio:.3g} times that of {one.second} from "
+            f"{quantity(one.shortest, 'm')} to {quantity(one.longest, 'm')}, expected within "
+            f"{math.expm1(2 * one.error):.0%}"
+        )
+    return told
 
 
 def _error(spectrum: JoinedSpectrum, shortest: float, longest: float) -> float:

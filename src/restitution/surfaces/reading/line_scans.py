@@ -103,7 +103,8 @@ def _even(path: Path, x: Array, z: Array, size: float | None) -> Surface:
         raise SurfaceError(
             f"{path}: {z.size - int(defined.sum())} of {z.size} points are undefined; measure again"
         )
-    missing = z.size - int(defined.sum())
+    missing, n = z.size - int(defined.sum()), int(np.isfinite(x).sum())
+    mean = float(np.ptp(x[np.isfinite(x)])) / (n - 1)
     x, z = x[defined], z[defined]
     if x[-1] < x[0]:
         x, z = x[::-1], z[::-1]
@@ -113,13 +114,11 @@ def _even(path: Path, x: Array, z: Array, size: float | None) -> Surface:
             f"{path}: its positions do not increase along the line; export a profile without "
             "overhangs"
         )
-    mean = float(steps.mean())
     if steps.max() > _LARGEST_STEP * mean:
         raise SurfaceError(
             f"{path}: no points from {x[steps.argmax()]:.4g} to {x[steps.argmax() + 1]:.4g} m; "
             "give the parts before and after as two files"
         )
-    n = z.size
     scale = 1.0 if size is None else size / (n * mean)
     at = x[0] + mean * np.arange(n)
     h = mean * scale
