@@ -83,9 +83,10 @@ def draw(seed: int, folder: Path) -> tuple[str, str, KnownSurface, tuple[float, 
         "steps = 3\n[unloading]\ncurves = 0\n[roughness]\n"
     )
     twin = common + f'kind = "joined"\nseed = 1\nbelow_grid = "omit"\n{"".join(names)}'
+    shortest = surface.shortest * (1 + 1e-6)  # rounded, it is not below two cells
     known = common + (
         f'kind = "self-affine"\nrms = "{1e9 * surface.rms:.9g} nm"\nhurst = {surface.hurst}\n'
-        f'rolloff = "{1e9 * surface.rolloff:.9g} nm"\nshortest = "{1e9 * surface.shortest * (1 + 1e-6):.9g} nm"'
+        f'rolloff = "{1e9 * surface.rolloff:.9g} nm"\nshortest = "{1e9 * shortest:.9g} nm"'
         f"\nseed = 100\nrealisations = {REALISATIONS}\n"
     )
     return twin, "total_error = false\n" + known, surface, (smoothing, noise)

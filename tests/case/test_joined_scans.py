@@ -8,7 +8,6 @@ import pytest
 
 from restitution.case.case_file import parse_case
 from restitution.errors import CaseError, SurfaceError
-from restitution.numerics.grid import Grid
 from restitution.surfaces.joined.advice import next_measurement
 from restitution.surfaces.split import SplitSurface
 from tolerance import approx
@@ -150,7 +149,7 @@ def test_the_next_measurement_fills_a_gap(folder):
     )
     spectrum = case("seed = 1\nbridge = true\n", tables).roughness[0].spectrum(folder)
     ((low, high),) = spectrum.gaps
-    further = next_measurement(spectrum, 0.5e-6, 10e-6)
+    further = next_measurement(spectrum, 1e-6, 6e-6)
     assert further.shortest < high
     assert further.longest > low
     assert "microscope" in str(further)

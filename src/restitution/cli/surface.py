@@ -1,8 +1,9 @@
 """`restitution surface`: describe the generated or measured surface of a case."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
 import xarray as xr
 from rich.table import Column, Table
@@ -50,7 +51,11 @@ def surface(case: Path, out: Path, figures: FigureFormat) -> None:
         with errors.status("writing the results"):
             with hold_signals():
                 write_netcdf(out / "surface.nc", dataset)
-                content = {**statistics, "warnings": warnings, "provenance": provenance}
+                content: dict[str, Any] = {
+                    **statistics,
+                    "warnings": warnings,
+                    "provenance": provenance,
+                }
                 content |= {"joined_spectra": joined} if joined else {}
                 write_json(out / "statistics.json", content)
                 write_checksums(out, ["statistics.json", "surface.nc"])
@@ -81,7 +86,7 @@ def surface(case: Path, out: Path, figures: FigureFormat) -> None:
     say_next(command("run", case, "-o", "OUT"))
 
 
-def _scans(rows: list[list[Cell]]) -> Table:
+def _scans(rows: Sequence[Sequence[Cell]]) -> Table:
     table = Table("scan", "waves", "", "ends at", Column("Rq", justify="right"), box=None)
     for name, _, _, _, shortest, longest, ends, rms, _ in rows:
         low, high, height = (quantity(float(value or 0), "m") for value in (shortest, longest, rms))

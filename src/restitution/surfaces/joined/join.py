@@ -213,12 +213,24 @@ class _Curve(NamedTuple):
         """C₁ (m³) of profiles: ∫ C dq_y/2π (Jacobs et al. 2017, eq. 8)."""
         return np.asarray(self._across(q)[1].sum(axis=1))
 
-    def sensitivity(self, q: Array) -> Array:
-        """Change of ln C₁ with ln C at the knots, shape (q.size, knots)."""
+    def sensitivity(self, scan: ScanSpectrum, used: Array) -> Array:
+        """Change of ln of `expected` with ln C at the knots, shape (used bands, knots)."""
+        of = self._profile_weights if scan.line else self._map_weights
+        rows = of(scan.wave_number)
+        if long := len(scan.weights):
+            parts = scan.weights * (self.profile if scan.line else self.at)(scan.waves)
+            rows[:long] = parts / parts.sum(axis=1)[:, None] @ of(scan.waves)
+        return np.asarray(rows[used])
+
+    def _map_weights(self, q: Array) -> Array:
+        return _weights(np.log(q), self.log_q)
+
+    def _profile_weights(self, q: Array) -> Array:
+        """Change of ln C₁ with ln C at the knots."""
         across, parts = self._across(q)
         shares = parts / parts.sum(axis=1)[:, None]
         weights = _weights(np.log(across.ravel()), self.log_q)
-        return np.einsum("ij,ijk->ik", shares, weights.reshape(*across.shape, -1))
+        return np.asarray(np.einsum("ij,ijk->ik", shares, weights.reshape(*across.shape, -1)))
 
     def _across(self, q: Array) -> tuple[Array, Array]:
         """Wave numbers q' = q cosh u, and their parts of C₁."""
@@ -286,8 +298,7 @@ def _fitted(spectra: Sequence[ScanSpectrum]) -> _Curve:
     curve = _Curve(knots, *_solved(np.concatenate(rows), w, np.concatenate(wanted), bends))
     for _ in range(_ROUNDS):
         for k, (scan, used) in enumerate(parts):
-            if scan.line:
-                rows[k] = curve.sensitivity(scan.wave_number[used])
+            rows[k] = curve.sensitivity(scan, used)
             here = np.log(curve.expected(scan)[used])
             wanted[k] = values[k] - here + rows[k] @ curve.log_density
         solved = _solved(np.concatenate(rows), w, np.concatenate(wanted), bends)
