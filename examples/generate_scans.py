@@ -1,7 +1,7 @@
 """Generate the synthetic scans of the examples.
 
-`python examples/generate_scans.py [FOLDER]` writes glass-bead.txt, lactose.x3p and steel-wall-*.txt,
-three scans of one surface, into FOLDER, or beside this file if there is no FOLDER. The seeds are
+`python examples/generate_scans.py [FOLDER]` writes glass-bead.txt, lactose.x3p and three scans of
+one surface, steel-wall-*.txt, into FOLDER, or beside this file if there is no FOLDER. The seeds are
 fixed, so every call writes the same scans.
 """
 

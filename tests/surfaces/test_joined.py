@@ -14,7 +14,8 @@ from restitution.surfaces.joined.scan_spectrum import ScanSpectrum
 from restitution.surfaces.joined.tip import tip_cut_off
 from restitution.surfaces.joined.twin import twin_of_scans
 from restitution.surfaces.noise import white_noise
-from restitution.surfaces.psd import power_spectral_density
+from restitution.surfaces.psd import power_spectral_density, wave_numbers
+from restitution.surfaces.surface import is_periodic
 from tolerance import approx
 from virtual_instruments import KnownSurface
 
@@ -186,9 +187,22 @@ def test_a_twin_of_any_size_has_the_joined_spectrum(joined, spacing):
     grid = Grid((160, 160), (spacing, spacing))
     made = twin_of_scans(joined, grid, seed=1)
     shortest = max(2 * spacing, joined.shortest)
-    longest = min(joined.longest, 2 * grid.size[0])
+    longest = min(joined.longest, 16 * grid.size[0])
     assert rms_slope(made) == approx(joined.slope(shortest, longest), rel=0.15)
     assert made.provenance["longest_wave_m"] == approx(longest)
+
+
+def test_longer_waves_than_the_grid_curve_it(joined):
+    grid = Grid((64, 64), (50e-9, 50e-9))
+    plain = [twin_of_scans(joined, grid, seed=k, periodic=True) for k in range(12)]
+    whole = [twin_of_scans(joined, grid, seed=k) for k in range(12)]
+    assert all(is_periodic(made) for made in plain)
+    assert not any(is_periodic(made) for made in whole)
+    rms = [np.sqrt(np.mean([np.var(one.height) for one in ones])) for ones in (plain, whole)]
+    assert rms[1] > 1.2 * rms[0]
+    q = wave_numbers(grid.nodes, grid.spacing)
+    power = joined.at(q.ravel()).sum() / (grid.size[0] * grid.size[1])
+    assert rms[0] == approx(np.sqrt(power), rel=0.02)
 
 
 def test_a_twin_has_the_heights_of_the_scan_that_carries_them():

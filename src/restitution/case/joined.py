@@ -119,6 +119,11 @@ class JoinedRoughness(Table):
         "number of standard deviations by which the joined spectrum is raised, for sensitivity "
         "studies",
     )
+    periodic: bool = key(
+        False,
+        "`true`: waves longer than the grid are left out, so that its opposite edges match, as "
+        "`[impacts]` and periodic contacts need",
+    )
     seed: Seed = key(..., "seed of the random numbers")
     realisations: Realisations = key(1, REALISATIONS)
     below_grid: BelowGrid | None = key(None, BELOW_GRID)
@@ -163,8 +168,8 @@ class JoinedRoughness(Table):
         return _spectrum_of(alike, str(folder), self.stamp(folder)).raised(self.deviations)
 
     def _alike(self) -> Self:
-        same = {"seed": 0, "realisations": 1, "below_grid": None, "split": None, "deviations": 0.0}
-        return self.model_copy(update=same)
+        same = {"seed": 0, "realisations": 1, "below_grid": None, "split": None}
+        return self.model_copy(update=same | {"deviations": 0.0, "periodic": False})
 
     def variant(self, number: int) -> Self:
         """The table of a single surface: `number` is added to the seed."""
@@ -235,7 +240,10 @@ class JoinedRoughness(Table):
                 "nodes": fine.nodes,
                 "spacing": fine.spacing,
             }
-            return kept(made_from, lambda: twin_of_scans(spectrum, fine, self.seed))
+            return kept(
+                made_from,
+                lambda: twin_of_scans(spectrum, fine, self.seed, periodic=self.periodic),
+            )
 
 
 @lru_cache(maxsize=8)

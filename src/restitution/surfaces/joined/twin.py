@@ -15,12 +15,16 @@ from restitution.numerics.grid import Grid
 from restitution.surfaces.describe import rms_slope
 from restitution.surfaces.joined.join import JoinedSpectrum
 from restitution.surfaces.joined.scan_spectrum import ScanSpectrum
-from restitution.surfaces.resample import carried, crop_to
+from restitution.surfaces.level import level
+from restitution.surfaces.resample import carried, crop_to, spline
 from restitution.surfaces.surface import Array, Surface
 from restitution.surfaces.twin import adjusted_heights
 from restitution.surfaces.wave_spectrum import TwinWaves
 
 _PERIODS = 2  # period of the twin, in edges of the grid, at most
+# Longer waves are almost paraboloids on the grid. They are summed on a coarse grid of this period
+# (in edges of the twin's period) and number of nodes; longer ones are left out.
+_LONG, _LONG_NODES = 8, 64
 _FINER = 10.0  # waves that no scan shows are named down to the shortest wave divided by this
 
 
@@ -37,11 +41,14 @@ class IsotropicWaves(TwinWaves):
         return np.asarray(self.spectrum.at(q.ravel()).reshape(q.shape) / (x * y))
 
 
-def twin_of_scans(spectrum: JoinedSpectrum, grid: Grid, seed: int) -> Surface:
-    """Make a twin with the waves of `spectrum` on `grid`, periodic over the grid or twice it.
+def twin_of_scans(
+    spectrum: JoinedSpectrum, grid: Grid, seed: int, *, periodic: bool = False
+) -> Surface:
+    """Make a twin with the waves of `spectrum` on `grid`.
 
     Heights are distributed as those of the scan that shows most of the mean square height. Waves
-    longer than twice the grid are left out.
+    longer than 16 times the grid are left out, and the mean plane of those longer than twice the
+    grid; if `periodic`, all that are longer than the grid.
 
     Raises `SurfaceError` if the cells are too large for any wave.
     """
@@ -51,14 +58,46 @@ def twin_of_scans(spectrum: JoinedSpectrum, grid: Grid, seed: int) -> Surface:
             f"grid: cells of {quantity(max(grid.spacing), 'm')} cannot resolve any wave of scans "
             f"of up to {quantity(spectrum.longest, 'm')}; use a smaller spacing"
         )
-    times = [min(_PERIODS, math.ceil(spectrum.longest / edge * (1 - 1e-9))) for edge in grid.size]
+    most = 1 if periodic else _PERIODS
+    times = [min(most, math.ceil(spectrum.longest / edge * (1 - 1e-9))) for edge in grid.size]
     whole = Grid((grid.nodes[0] * times[0], grid.nodes[1] * times[1]), grid.spacing)
     half = 0.5 * spectrum.shortest
     waves = IsotropicWaves((half, half), whole.size, spectrum)
     scan = _of_heights(spectrum, whole)
     height = adjusted_heights(waves, scan, whole, seed)
     made = Surface(np.ascontiguousarray(crop_to(height, grid.nodes)), grid)
-    return replace(made, provenance=_provenance(spectrum, made, whole, seed))
+    longest = min(spectrum.longest, max(whole.size))
+    if not periodic and spectrum.longest > max(whole.size) * (1 + 1e-9):
+        long, longest = _longer_waves(spectrum, whole, grid, seed)
+        made = replace(made, height=made.height + long)
+    closed = whole == grid and longest <= max(whole.size) * (1 + 1e-9)
+    return replace(made, provenance=_provenance(spectrum, made, longest, seed, periodic=closed))
+
+
+@dataclass(frozen=True)
+class _LongerWaves(IsotropicWaves):
+    """Waves longer than `beyond` (m)."""
+
+    beyond: float
+
+    def power(self, m: NDArray[np.int64], n: NDArray[np.int64]) -> Array:
+        x, y = self.period
+        q = 2 * math.pi * np.hypot(m[:, None] / x, n[None, :] / y)
+        return np.where(q < 2 * math.pi / self.beyond * (1 - 1e-9), super().power(m, n), 0.0)
+
+
+def _longer_waves(
+    spectrum: JoinedSpectrum, whole: Grid, grid: Grid, seed: int
+) -> tuple[Array, float]:
+    """Heights (m) of the waves longer than `whole` on `grid` without a plane, and the longest."""
+    n = _LONG_NODES
+    period = tuple(_LONG * edge for edge in whole.size)
+    coarse = Grid((n, n), (period[0] / n, period[1] / n))
+    waves = _LongerWaves(coarse.spacing, coarse.size, spectrum, max(whole.size))
+    height = adjusted_heights(waves, None, coarse, seed + 1)
+    to = spline(height, (coarse.x, coarse.y), (grid.x, grid.y))
+    flat = level(Surface(np.ascontiguousarray(to), grid), "tilt")
+    return flat.height, min(spectrum.longest, max(coarse.size))
 
 
 def carrier(spectrum: JoinedSpectrum) -> ScanSpectrum | None:
@@ -97,9 +136,9 @@ def unmeasured(spectrum: JoinedSpectrum) -> Iterator[str]:
 
 
 def _provenance(
-    spectrum: JoinedSpectrum, made: Surface, whole: Grid, seed: int
+    spectrum: JoinedSpectrum, made: Surface, longest: float, seed: int, *, periodic: bool
 ) -> dict[str, str | float]:
-    cells, longest = 2 * max(made.grid.spacing), min(spectrum.longest, max(whole.size))
+    cells = 2 * max(made.grid.spacing)
     shortest = max(cells, spectrum.shortest)
     slope = spectrum.slope(spectrum.shortest, longest)
     gone_rms, gone = (
@@ -121,11 +160,10 @@ def _provenance(
             f"waves shorter than {1e6 * cells:.4g} um, which this grid does not resolve, have "
             f"{gone / slope:.0%} of the rms slope"
         )
-    if spectrum.longest > max(whole.size) * (1 + 1e-9):
-        lost = spectrum.slope(max(whole.size), spectrum.longest)
+    if spectrum.longest > longest * (1 + 1e-9):
+        lost = spectrum.slope(longest, spectrum.longest)
         told.append(
-            f"waves longer than {quantity(max(whole.size), 'm')}, {_PERIODS} times the grid, are "
-            f"left out (rms slope {lost:.2g})"
+            f"waves longer than {quantity(longest, 'm')} are left out (rms slope {lost:.2g})"
         )
     if of_heights is None:
         told.append("heights are normally distributed, because a line scan shows most of them")
@@ -141,7 +179,7 @@ def _provenance(
         "heights_of": "normal distribution" if of_heights is None else of_heights.name,
         "twin_Sdq": rms_slope(made),
         "spectrum_error": _error(spectrum, shortest, longest),
-        **({"periodicity": "periodic over the domain"} if whole == made.grid else {}),
+        **({"periodicity": "periodic over the domain"} if periodic else {}),
         "placement": "made on the grid, with the waves that it carries",
         "pixel_x_m": 0.5 * spectrum.shortest,
         "pixel_y_m": 0.5 * spectrum.shortest,
