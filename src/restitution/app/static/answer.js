@@ -49,6 +49,11 @@ export function drawAnswer() {
 function inDigits({ restitution, total_error: error }, curve) {
   if (curve.preview || curve.partial) return `e ≈ ${restitution.toFixed(2)}`;
   if (error === null || !curve.errors) return `e = ${restitution.toFixed(3)}`;
+  return withDigits(restitution, error);
+}
+
+function withDigits(restitution, error) {
+  if (error === null || error === undefined) return `e = ${restitution.toFixed(3)}`;
   const places = Math.min(4, Math.max(2, error > 0 ? Math.ceil(-Math.log10(error)) : 2));
   return `e = ${restitution.toFixed(places)} ± ${Math.max(error, 10 ** -places).toFixed(places)}`;
 }
@@ -89,7 +94,7 @@ function worn(V, here) {
   if (get("depths") !== "impact" || !here) return [];
   if (!e) return [["After run-in", element("span", { class: "soft" }, "not computed; the value above is that of new surfaces")]];
   const end = e[e.length - 1];
-  return [["After run-in", `e = ${withError(end.restitution, end.total_error, "").trim()} where impacts have covered the surface ${Number(end.coverage.toPrecision(2))} times (${end.impacts} impacts); new: ${e[0].restitution.toFixed(3)}`]];
+  return [["After run-in", `${withDigits(end.restitution, end.total_error)} where impacts have covered the surface ${Number(end.coverage.toPrecision(2))} times (${end.impacts} impacts); new: ${e[0].restitution.toFixed(3)}`]];
 }
 
 function attraction(V) {
