@@ -59,11 +59,8 @@ def test_the_pixels_of_a_scan_without_a_size_become_the_grid(page, wavy, tmp_pat
     expect(page.locator("#field-roughness-size-problem")).to_contain_text("edge lengths")
     page.locator("#field-roughness-size").fill("12 um, 10 um")
     expect(page.locator("#grid-verdict")).to_have_text("the pixels of the scan")
-    computed(page)
-    rows = page.locator("#statistics tbody tr").all()
-    texts = {
-        row.locator("td").first.inner_text(): row.locator("td").last.inner_text() for row in rows
-    }
+    expect(page.locator("#statistics")).to_contain_text("48 × 40")
+    texts = dict(table(page, "statistics"))
     assert texts["nodes"] == "48 × 40"
     assert texts["spacing"] == "250 nm × 250 nm"
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import threading
 from collections.abc import Callable, Iterator
@@ -245,9 +246,13 @@ _NEEDED = {
 }
 
 
-def _without_folder(inbox: Inbox, number: int, scans: Path, line: str | None) -> None:
-    """Send `line`, in which scans have the names that the user knows."""
-    inbox.send(number, line and line.replace(json.dumps(f"{scans}/")[1:-1], ""))
+def _send_without_folders(inbox: Inbox, number: int, room: Path, line: str | None) -> None:
+    """Send `line`; in messages, files in the temporary folder `room` have only their names."""
+    if line is not None:
+        folder = re.escape(json.dumps(str(room))[1:-1])
+        line = re.sub(f'{folder}/results-[^/:" ]+', "the results", line)
+        line = re.sub(f"{folder}/scans/", "", line)
+    inbox.send(number, line)
 
 
 def serve(connection: Connection, scans: Path, room: Path) -> None:
@@ -257,7 +262,7 @@ def serve(connection: Connection, scans: Path, room: Path) -> None:
     worker = Worker(scans, room, inbox.check)
     while True:
         request = inbox.next()
-        send = partial(_without_folder, inbox, request.number, scans)
+        send = partial(_send_without_folders, inbox, request.number, room)
         try:
             with inbox.stoppable():
                 worker.answer(request, send)

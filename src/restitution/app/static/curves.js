@@ -23,7 +23,7 @@ export function drawCurves() {
   const others = [...(curve.under ? [underneath(curve.under)] : []), ...pins];
   const { between } = what === "velocity" ? curve : { between: null };
   const traces = [...modelBand(curve, between, key, scale), ...others.map((other) => pinTrace(other, key, scale, "restitution"))];
-  draw("cor", joined(told(curve.figures[what]), between), traces, shapes);
+  draw("cor", joined(told(opened(curve.figures[what])), between), traces, shapes);
   draw("force", told(curve.figures.force), others.map((other) => pinTrace(other, "max_indentation_m", 1e6, "force_N")), at ? [line(1e6 * at.max_indentation_m)] : []);
   const cors = curve.rows.map((row) => row.restitution);
   $("cor").setAttribute("aria-label", cors.length
@@ -39,6 +39,18 @@ function told(spec) {
   if (!spec || !state.curve.preview) return spec;
   const data = spec.data.map((trace) => (trace.mode === "lines+markers"
     ? { ...trace, name: escaped(previewOf(state.curve)), line: { ...trace.line, dash: "dash" } } : trace));
+  return { ...spec, data };
+}
+
+// Markers of points at which the grid does not resolve adhesion are open, too.
+function opened(spec) {
+  const { rows } = state.curve;
+  if (!spec || rows.every((row) => row.adhesion_resolved !== false)) return spec;
+  const data = spec.data.map((trace) => {
+    if (trace.mode !== "lines+markers" || numbers(trace.x).length !== rows.length) return trace;
+    const symbol = [trace.marker.symbol].flat()[0].replace("-open", "");
+    return { ...trace, marker: { ...trace.marker, symbol: rows.map((row) => (isResolved(row) ? symbol : `${symbol}-open`)) } };
+  });
   return { ...spec, data };
 }
 

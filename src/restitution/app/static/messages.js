@@ -7,7 +7,7 @@ import { parsed } from "./units.js";
 const TABLE = "first|second|interface|roughness|grid|impact|indentation|load|unloading|impacts";
 const KEY = new RegExp(`\\b(${TABLE})\\.([a-z_]+)\\b`, "g");
 const VALUE = new RegExp(`(?:\\b(${TABLE})\\.)?\\b([a-z_]+) = ("([^"]+)"|\\d+(?:\\.\\d+)?)`, "g");
-const EDGE = /a grid of about ([\d.]+ \S+) x ([\d.]+ \S+)/;
+const EDGE = /grid of (?:about|at least) ([\d.]+ \S+?)(?: x ([\d.]+ \S+?))?(?:[ ,;.]|$)/;
 
 const labelOf = (field) => (field.label || "Roughness").replace(/ \(.*/, "");
 
@@ -26,7 +26,7 @@ export function remedies(words) {
     found.set("Refine where needed", () => set("grid.refine", "auto"));
   }
   const edge = EDGE.exec(words);
-  if (edge) found.set("Use a larger grid", () => enlarge(parsed(edge[1], "m"), parsed(edge[2], "m")));
+  if (edge) found.set("Use a larger grid", () => enlarge(...[edge[1], edge[2] || edge[1]].map((text) => parsed(text, "m"))));
   if (/work_of_adhesion/.test(words) && /"library"/.test(words)) {
     found.set("Use the library's value", () => set("interface.work_of_adhesion", "library"));
     found.set("No adhesion", () => set("interface.work_of_adhesion", "0 J/m^2"));
