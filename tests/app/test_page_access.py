@@ -78,7 +78,7 @@ def test_keyboard_alone_from_opening_to_an_export(new_page, tmp_path):
     computed(new_page)
     expect(new_page.locator("#answer-value")).to_have_text(re.compile(r"^e . 0\.\d"))
     tab_to(new_page, "code")
-    new_page.keyboard.type("lammps")
+    assert new_page.locator("#code").input_value() == "lammps"
     tab_to(new_page, "export")
     with new_page.expect_download() as got:
         new_page.keyboard.press("Enter")

@@ -57,7 +57,8 @@ def _plain(wanted: str) -> str:
 def first_content(case: Path | None) -> Content:
     """Read the tables of the case file `case` or, if `case` is None, of the built-in first case."""
     if case is None:
-        return presets()[0]["content"]
+        first: Content = presets()[0]["content"]
+        return first
     text = read_text(case)
     try:
         return content_of(text)
