@@ -99,6 +99,9 @@ class LiveCurves:
 
     def _contact(self, case: Case, folder: Path) -> Contact:
         scans = [folder / part.file for part in case.roughness if part.kind == "measured"]
+        for part in case.roughness:
+            if part.kind == "joined":
+                scans += [path for path, _ in part.files(folder)]
         # Most sliders do not change the surface. A new time or size shows that a scan was replaced.
         stamps = [(scan.stat().st_mtime_ns, scan.stat().st_size) for scan in scans]
         key = repr((case.roughness, case.grid, stamps))

@@ -7,7 +7,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from restitution.app.content import Content, scans_of, text_of
+from restitution.app.content import Content, joins_scans, scans_of, text_of
 from restitution.case.case import Case
 from restitution.case.case_file import parse_case, parse_toml, problems_of
 from restitution.case.generated import GeneratedRoughness
@@ -38,23 +38,24 @@ def with_grid(text: str, folder: Path) -> tuple[str, Content | None]:
     own = content.get("grid", {})
     if not isinstance(own, dict) or {"nodes", "spacing"} & set(own):
         return text, None
-    if scans_of(content):
+    if scans_of(content) and not joins_scans(content):
         chosen = _of_scans(text, folder)
     else:
         probe = {**content, "grid": {**own, **_PROBE}}
         if problems_of(probe):
             return text_of(probe), None
-        chosen = _of_case(parse_case(text_of(probe)), own)
+        chosen = _of_case(parse_case(text_of(probe)), own, folder)
     grid = {**chosen, **own}
     return text_of({**content, "grid": grid} if grid else content), grid
 
 
-def _of_case(case: Case, own: Content) -> Content:
+def _of_case(case: Case, own: Content, folder: Path) -> Content:
     pair, limit = case.pair(), case.yielding().hardness
     depths = [case.indentation_at(depth) for depth in case.depths()]
     parts = [part for part in case.roughness if isinstance(part, GeneratedRoughness)]
-    height = _PEAK * math.hypot(*(part.rms for part in parts)) if parts else 0.0
-    reach = math.sqrt(2 * pair.radius * (depths[-1] + height)) if parts else 0.0
+    heights = [part.rms_height(folder) for part in case.roughness]
+    height = _PEAK * math.hypot(*heights) if heights else 0.0
+    reach = math.sqrt(2 * pair.radius * (depths[-1] + height)) if heights else 0.0
     edge = 2 * MARGIN * max(reach, predicted_radius(pair, depths[-1], limit))
     waves = [length for part in parts for length in _lengths(part)]
     edge = max(edge, *(2.5 * length for length in waves), 0.0)

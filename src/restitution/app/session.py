@@ -13,6 +13,7 @@ from restitution.app.content import Content, content_of, scans_of
 from restitution.app.presets import presets
 from restitution.case.case_file import read_text
 from restitution.errors import CaseError
+from restitution.surfaces.joined.read import matching
 
 LARGEST_SCAN = 2**28  # largest size (bytes) of a scan that the user drops on the page
 _ODD = re.compile(r"[^\w.()+-]+")  # characters of a file name that are replaced
@@ -67,6 +68,13 @@ def first_content(case: Path | None) -> Content:
 
 
 def _bring_scans(content: Content, folder: Path, scans: Path) -> None:
+    for part in content.get("roughness", ()):
+        if "scan" in part:
+            part["scan"] = [
+                {**table, "file": str(path.absolute())}
+                for table in part["scan"]
+                for path in matching(folder, table["file"])
+            ]
     for table in scans_of(content):
         path = folder / table["file"]
         source = path.resolve()

@@ -216,8 +216,14 @@ class Worker:
     def read(self, tab: str, file: str) -> Iterator[str]:
         """Read a scan; yield its nodes and spacing, or what the form must add, and why."""
         from restitution.surfaces import read_surface
+        from restitution.surfaces.joined.read import HowToRead, read_spectra
+        from restitution.surfaces.reading.containers import is_container
         from restitution.surfaces.refused import RefusedSurfaceError
 
+        if is_container(self._scans / file):
+            scans = list(read_spectra(self._scans / file, HowToRead(undefined="interpolate")))
+            yield as_json({"scans": len(scans), "nodes": scans[0].surface.grid.nodes})
+            return
         try:
             surface = read_surface(self._scans / file, undefined="interpolate")
         except RefusedSurfaceError as error:

@@ -24,7 +24,7 @@ from restitution.case.roughness_keys import (
     Stamp,
     naming,
 )
-from restitution.case.rulebook import key
+from restitution.case.rulebook import Input, key
 from restitution.case.schema import PairOf, Table
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
@@ -100,7 +100,11 @@ class ScanTable(Table):
 class JoinedRoughness(Table):
     """The table `[roughness]` with `kind = "joined"`."""
 
-    kind: Literal["joined"] = key(..., "several scans of one surface")
+    kind: Literal["joined"] = key(
+        ...,
+        "several scans of one surface",
+        page=Input("", choices=lambda: {"joined": "joined: several scans of one surface"}),
+    )
     scans: tuple[Pattern, ...] = key(
         (),
         'topographies and line scans, patterns such as `"*.di"`, folders, or containers (`.zip`) '
@@ -124,7 +128,9 @@ class JoinedRoughness(Table):
         "`true`: waves longer than the grid are left out, so that its opposite edges match, as "
         "`[impacts]` and periodic contacts need",
     )
-    seed: Seed = key(..., "seed of the random numbers")
+    seed: Seed = key(
+        ..., "seed of the random numbers", page=Input("Seed", slider=(0, 100), initial=1)
+    )
     realisations: Realisations = key(1, REALISATIONS)
     below_grid: BelowGrid | None = key(None, BELOW_GRID)
     split: Length | None = key(None, SPLIT)

@@ -7,12 +7,24 @@ import { tab, token } from "./requests.js";
 import { $, element, state } from "./state.js";
 
 export function drawUpload() {
-  const input = element("input", { type: "file", id: "scan", "aria-label": "Scan from a file" });
-  input.addEventListener("change", () => { if (input.files[0]) upload(input.files[0]); });
-  return element("div", { class: "field wide" }, element("label", { for: "scan" }, "Read a scan, or drop it onto the page"), input);
+  const input = element("input", { type: "file", id: "scan", multiple: true, "aria-label": "Scan from a file" });
+  input.addEventListener("change", () => upload([...input.files]));
+  return element("div", { class: "field wide" }, element("label", { for: "scan" }, "Read a scan, or drop it onto the page; several scans of one surface are joined"), input);
 }
 
-async function upload(file) {
+async function upload(files) {
+  const scans = [];
+  for (const file of files) {
+    const scan = await store(file);
+    if (!scan) return;
+    scans.push(scan);
+  }
+  if (scans.length > 1 || (scans[0] && scans[0].scans)) join(scans);
+  else if (scans.length) use(scans[0]);
+}
+
+// A scan that the program has read and stored, or nothing after an error.
+async function store(file) {
   say(`reading ${file.name}…`);
   let scan;
   try {
@@ -25,9 +37,31 @@ async function upload(file) {
   } catch (error) {
     showProblems({ "roughness.file": error.message, "": get("roughness.kind") === "measured" ? "" : error.message });
     say("the scan was not read");
+    return undefined;
+  }
+  if (scan.error) { showProblems({ "": `${file.name}: ${scan.error}` }); say("the scan was not read"); return undefined; }
+  return scan;
+}
+
+// Several scans of one surface, or a container of such scans.
+function join(scans) {
+  const unsized = scans.find((scan) => scan.needs_size || scan.needs_height_unit);
+  if (unsized) {
+    showProblems({ "": `${unsized.needs_size || unsized.needs_height_unit}; scans that are joined must state it, or a case file with [[roughness.scan]]` });
+    say("the scans were not joined");
     return;
   }
-  if (scan.error) { showProblems({ "": `${file.name}: ${scan.error}` }); say("the scan was not read"); return; }
+  const before = fields().filter(shown);
+  const { seed } = table("roughness") || {};
+  state.content.roughness = [{ kind: "joined", seed: Number.isInteger(seed) ? seed : 1, scan: scans.map(({ name }) => ({ file: name })) }];
+  settle(before);
+  delete state.content.grid;
+  state.grid = null;
+  drawForm();
+  changed();
+}
+
+function use(scan) {
   const before = fields().filter(shown);
   const seeds = { ...(table("roughness") || {}) };
   state.content.roughness = [{ kind: "measured", file: scan.name }];
@@ -48,6 +82,6 @@ export function listenForScans() {
   document.addEventListener("drop", (event) => {
     event.preventDefault();
     $("drop").hidden = true;
-    if (event.dataTransfer.files[0]) upload(event.dataTransfer.files[0]);
+    upload([...event.dataTransfer.files]);
   });
 }
