@@ -81,11 +81,19 @@ class Measured:
         return self.low + (self.high - self.low) * (40 * (number % 5) + number % 7) / 166
 
 
+def preset(name: str) -> str:
+    """The text of a case that the page offers."""
+    folder = HERE.parent / "src" / "restitution" / "app" / "presets"
+    return (folder / f"{name}.toml").read_text("utf-8")
+
+
 CASES = {
     "constant bound (`benchmarks/steel.toml`)": Measured(STEEL),
     "growing bound (Y = 268 MPa)": Measured(STEEL, changes=GROWING),
     "growing bound, adhesion `jkr`": Measured(STEEL, changes=ADHESIVE, slow=True),
     "adhesion `cohesive`": Measured(SILICA, 75, 110, slow=True),
+    "preset *Steel bead*": Measured(preset("steel-bead"), 400, 450),
+    "preset *Lactose powder*": Measured(preset("lactose-powder"), 70, 100, slow=True),
 }
 # Moves the slider of Rq, and returns the times (ms) of the first curve and, if `whole`, of the
 # curve of the case, once they are painted.
@@ -93,11 +101,12 @@ MOVE = """([position, whole]) => new Promise((done) => {
   const slider = document.getElementById("field-roughness-rms-slider");
   slider.value = position;
   const began = performance.now();
-  let first = null;
+  let first = null, points = null;
   const hear = ({ detail }) => requestAnimationFrame(() => setTimeout(() => {
-    if (detail.partial) return;
     const painted = performance.now();
-    first = first || { ...detail, began, painted };
+    points = points || painted;
+    if (detail.partial) return;
+    first = first || { ...detail, began, painted, points };
     if (whole && detail.preview) return;
     document.removeEventListener("curve", hear);
     done({ ...first, whole: painted });
@@ -113,17 +122,21 @@ REPORT = """\
 
 The page of `restitution app` ran in Chromium (headless, without a GPU) on the same machine. The
 slider of Rq moved {changes} times. The time is measured from the move until the browser has painted
-the first new curve of COR: the curve of the case, or a preview with fewer depths and larger cells.
+the first new points of COR, and the first new curve: that of the case, or a preview with fewer
+depths and larger cells.
 Without adhesion, each move follows when the curve of the case has been drawn; with adhesion, one
 second after the preview, so that it cancels the refinement. The table shows the median of the times
-(largest time in brackets), the parts of this time, and the time of the whole curve.
+(largest time in brackets), the parts of that of the first curve (solve, server and transfer,
+drawing), and the time of the whole curve.
 
-| case | first curve, ms | solve, ms | server and transfer, ms | drawing, ms | whole curve, s |
-|---|---|---|---|---|---|
+| case | first points, ms | first curve, ms | solve, ms | transfer, ms | drawing, ms | whole, s |
+|---|---|---|---|---|---|---|
 {rows}
 
 The steel spheres have 24 depths on 512² nodes, with adhesion (w = 0.05 J/m²) from 20 nm to 1 µm on
 cells of 0.1 µm. `cohesive`: silica spheres (R = 5 µm, w = 0.05 J/m²), 10 velocities, 256² nodes.
+The page chooses the grids of the presets: 512² nodes and 12 velocities, and with adhesion those
+that resolve it and 8 velocities.
 With adhesion, the time of the whole curve is that of one change.
 
 First curves:
@@ -148,6 +161,7 @@ def times(page: Page, case: Measured, count: int) -> list[dict[str, Any]]:
 def row(name: str, moved: list[dict[str, Any]], whole: list[float]) -> str:
     """Format a row of the table."""
     parts = (
+        [t["points"] - t["began"] for t in moved],
         [t["painted"] - t["began"] for t in moved],
         [t["solve"] for t in moved],
         [t["received"] - t["asked"] - t["solve"] for t in moved],
@@ -214,7 +228,9 @@ def main() -> None:
         for name, case in CASES.items():
             file = Path(folder) / "case.toml"
             case.write(file)
-            moved, whole, memories = measured(case, file, 0 if case.slow or case.changes else MANY)
+            moved, whole, memories = measured(
+                case, file, MANY if case.text is STEEL and not case.changes else 0
+            )
             rows.append(row(name, moved, whole))
             previews.append(first_curves(name, moved))
             held.append(memories)

@@ -45,10 +45,11 @@ def table(page, name):
 
 def shown(page):
     """The numbers of the curve that the page shows, by the names of the columns of curve.csv."""
-    page.get_by_text("The numbers of this curve").click()
-    rows = table(page, "numbers")
-    page.get_by_text("The numbers of this curve").click()
-    return {name: [float(row[column]) for row in rows] for name, column in NUMBERS.items()}
+    rows = [row.locator("td").all() for row in page.locator("#numbers tbody tr").all()]
+    return {
+        name: [float(row[column].get_attribute("data-value")) for row in rows]
+        for name, column in NUMBERS.items()
+    }
 
 
 def curve_of(results):

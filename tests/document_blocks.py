@@ -13,8 +13,8 @@ Blocks of a page run from top to bottom in one folder, which holds a copy of `ex
 
 A table below `<!-- keys: NAME … -->` is made from the schema of the case file. It has the keys that
 all tables NAME have, less those of a table after `without`. `roughness:measured` is a kind of a
-table, and `case` stands for the keys above all tables. A table below `<!-- quantities -->` lists
-quantities and units.
+table, `roughness:joined.scan` a table in it, and `case` stands for the keys above all tables. A
+table below `<!-- quantities -->` lists quantities and units.
 
 A block below the comment `<!-- not run: REASON -->` is left out.
 `python tests/document_blocks.py PAGE…` writes the tables, and into `text` blocks what was printed.
@@ -152,8 +152,12 @@ def _schema(case: Any, name: str) -> Any:
 
     if name == "case":
         return case
+    name, _, inner = name.partition(".")
     name, _, kind = name.partition(":")
     kinds = tables_in(case.model_fields[name])
+    if inner:
+        outer = next(table for table in kinds if kind in next(rules(table)).words)
+        return tables_in(outer.model_fields[inner])[0]
     return next(table for table in kinds if not kind or kind in next(rules(table)).words)
 
 

@@ -15,7 +15,14 @@ from tolerance import approx
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 CASES = sorted(path.name for path in EXAMPLES.glob("*.toml"))
-SCANS = {"glass-bead.txt": 0.1e-9, "lactose.x3p": 0.2e-9}  # step of the stored heights (m)
+# Step of the stored heights (m).
+SCANS = {
+    "glass-bead.txt": 0.1e-9,
+    "lactose.x3p": 0.2e-9,
+    "steel-wall-afm-1.txt": 0.1e-9,
+    "steel-wall-afm-2.txt": 0.1e-9,
+    "steel-wall-optical.txt": 0.1e-9,
+}
 
 
 @pytest.fixture

@@ -28,6 +28,9 @@ def content_of(text: str) -> Content:
             content[name] = {"material": content[name], "radius": "flat"}
     if isinstance(content.get("roughness"), dict):
         content["roughness"] = [content["roughness"]]
+    for table in _tables(content.get("roughness")):
+        if names := table.pop("scans", None):
+            table["scan"] = [*({"file": name} for name in _listed(names)), *table.get("scan", ())]
     return content
 
 
@@ -66,7 +69,24 @@ def problems_in(text: str, folder: Path) -> dict[str, str]:
 
 
 def scans_of(content: Content) -> list[Content]:
-    """List the tables of scans in the tables `content`; each has the key `file`."""
-    parts = content.get("roughness", [])
-    tables = parts if isinstance(parts, list) else [parts]
-    return [table for table in tables if isinstance(table, dict) and "file" in table]
+    """List the tables of scans in the tables `content`; each has the key `file`.
+
+    Names in `scans` of joined scans become tables.
+    """
+    tables = [*_tables(content.get("roughness"))]
+    tables += [inner for table in tables for inner in _tables(table.get("scan"))]
+    listed = [table for table in tables if "file" in table]
+    return listed + [{"file": name} for table in tables for name in _listed(table.get("scans"))]
+
+
+def joins_scans(content: Content) -> bool:
+    """Whether `content` has a joined spectrum of scans."""
+    return any(table.get("kind") == "joined" for table in _tables(content.get("roughness")))
+
+
+def _listed(value: Any) -> list[Any]:
+    return value if isinstance(value, list) else [] if value is None else [value]
+
+
+def _tables(value: Any) -> list[Content]:
+    return [table for table in _listed(value) if isinstance(table, dict)]

@@ -15,6 +15,7 @@ from restitution.app.figures import (
     live_dataset,
     surface_content,
 )
+from restitution.app.headline import headline
 from restitution.app.preview import Ladder, Level, Pace
 from restitution.case.case import Case
 from restitution.case.case_file import parse_case
@@ -26,6 +27,7 @@ from restitution.curve.follow import follow
 from restitution.curve.point import Point
 from restitution.errors import DomainError, RestitutionError
 from restitution.runs.depths import CaseUnloading, loads_of
+from restitution.runs.error_budget import ErrorBudget
 from restitution.runs.losses import loss_warnings, unloading_of, with_losses
 from restitution.runs.messages import input_warnings, require_possible
 from restitution.runs.refinement import least_refined, with_chosen_adhesion, with_chosen_grids
@@ -34,6 +36,7 @@ from restitution.runs.two_scales import solve_patches
 from restitution.surfaces import Surface
 
 _PARTIAL = 0.7  # time (s) between two drawings of a curve that is still being computed
+_FIRST = 0.25  # time (s) after which the first preview is drawn as far as it has come
 _TABS = 4  # number of tabs whose last curves are kept
 
 
@@ -72,8 +75,10 @@ class LiveCurves:
         if curve is not None and len(curve.maps):
             yield curve.maps.line(min(max(depth, 0), len(curve.maps) - 1))
 
-    def smooth(self, tab: str, shown: str, check: Callable[[], None]) -> Iterator[str]:
-        """Yield the smooth curve and the surface of the last curve of `tab`.
+    def smooth(
+        self, tab: str, shown: str, folder: Path, check: Callable[[], None]
+    ) -> Iterator[str]:
+        """Yield the smooth curve, the surface and the first errors of the last curve of `tab`.
 
         The surface is left out if `shown`, the hash of the heights on the page, is its own.
         """
@@ -81,6 +86,7 @@ class LiveCurves:
         if curve is not None:
             yield from curve.with_smooth(check)
             yield from curve.with_surface(shown, check)
+            yield from curve.with_errors(folder, check)
 
     def _curve(self, case: Case, folder: Path) -> _Curve:
         contact = self._contact(case, folder)
@@ -93,6 +99,9 @@ class LiveCurves:
 
     def _contact(self, case: Case, folder: Path) -> Contact:
         scans = [folder / part.file for part in case.roughness if part.kind == "measured"]
+        for part in case.roughness:
+            if part.kind == "joined":
+                scans += [path for path, _ in part.files(folder)]
         # Most sliders do not change the surface. A new time or size shows that a scan was replaced.
         stamps = [(scan.stat().st_mtime_ns, scan.stat().st_size) for scan in scans]
         key = repr((case.roughness, case.grid, stamps))
@@ -119,15 +128,16 @@ class _Curve:
         while number < len(ladder.levels) - 1:
             level, points = ladder.levels[number], list[Point]()
             words, start = ladder.words(level), time.perf_counter()
-            shown, count = start, len(level.depths)
+            shown, count, pause = start, len(level.depths), _PARTIAL if drawn else _FIRST
             for point in self._points(level, check):
                 points.append(point)
-                if time.perf_counter() - shown > _PARTIAL and len(points) < count:
+                if time.perf_counter() - shown > pause and len(points) < count:
                     shown, progress = time.perf_counter(), f"{len(points)} of {count} depths"
                     if drawn:
                         yield as_json({"progress": progress, "next": words})
                     else:
                         yield self.line(points, progress, preview=words)
+                        pause = _PARTIAL
             pace.note(ladder, number, time.perf_counter() - start)
             number, wanted = pace.next(ladder, number, time.perf_counter() - self.began)
             if wanted and points:
@@ -183,6 +193,7 @@ class _Curve:
             {
                 "curve": [point.cells() for point in points],
                 "figures": curve_figures(results),
+                **headline(points),
                 "progress": progress,
                 "spent": time.perf_counter() - self.began,
                 "information": default_yield(self.case.yielding().source),
@@ -207,3 +218,14 @@ class _Curve:
         if key != shown:
             check()
             yield as_json({"surface_key": key, **surface_content(surface)})
+
+    def with_errors(self, folder: Path, check: Callable[[], None]) -> Iterator[str]:
+        """The curve with all errors but the scatter of surfaces, which takes most of the time."""
+        if not self.case.total_error or not self.case.roughness or self.failure is not None:
+            return
+        budget = ErrorBudget(self.case, folder, self.points, lambda _: check(), scattered=False)
+        try:
+            budget.add(self.contact.surface)
+        except RestitutionError:  # the whole run reports it
+            return
+        yield self.line(budget.points, "", errors="of solver, grid and materials")

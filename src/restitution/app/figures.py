@@ -88,7 +88,9 @@ def surface_content(surface: Surface) -> dict[str, Any]:
 def _in_unit(value: float | None, unit: str) -> str:
     if value is None:
         return "–"
-    return quantity(value, "m") if unit == " m" else f"{value:.4g}{unit.replace('per m', '1/m')}"
+    if unit == " m":
+        return quantity(value, "m")
+    return f"{1e-3 * value:.4g} 1/mm" if unit == " per m" else f"{value:.4g}{unit}"
 
 
 def _thinned(surface: Surface) -> Surface:

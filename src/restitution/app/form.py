@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
+from restitution.app.presets import presets
 from restitution.case.bodies import FROM_LIBRARY
 from restitution.case.case import Case
 from restitution.case.materials import Material, materials
@@ -17,10 +19,11 @@ from restitution.display import quantity
 Choice = tuple[str, str]  # the value in the case file, and its label in the form
 
 _SECOND: tuple[Choice, ...] = (("", "the same as the first"), ("own", "its own values"))
+_GRID: tuple[Choice, ...] = (("", "chosen by the program"), ("own", "its own values"))
 # The tables that prescribe depths, as the page offers them.
 _DEPTHS = {
-    "indentation": "indentations (fastest)",
     "impact": "impact velocities",
+    "indentation": "indentations",
     "load": "loads",
 }
 
@@ -45,6 +48,8 @@ class Field:
     initial: Any = None
     hint: str = ""
     more: bool = False
+    switch: str = ""
+    help: str = ""
 
 
 @dataclass(frozen=True)
@@ -62,6 +67,7 @@ def form(case: type[Case] = Case) -> dict[str, Any]:
         "groups": [asdict(group) for group in _groups(case)],
         "units": unit_factors(),
         "codes": CODES,
+        "presets": presets(),
         "library": {key: _library_values(material) for key, material in materials().items()},
     }
 
@@ -80,14 +86,18 @@ def _groups(case: type[Case]) -> list[Group]:
     second = Field("second", "Second particle", choices=_SECOND)
     depths = Field("depths", "Depths given as", choices=tuple(_DEPTHS.items()))
     top = tuple(_field(rule, rule.name) for rule in rules(case) if _is_shown(rule))
+    grid = [
+        replace(field, when=("grid", "own")) if field.key != "grid.refine" else field
+        for field in _table(case, "grid")
+    ]
     return [
         Group("First particle", _table(case, "first")),
         Group("Second particle", (second, *_table(case, "second", ("second", "own")))),
         Group("Interface", _table(case, "interface")),
         Group("Surface", _table(case, "roughness")),
-        Group("Grid", _table(case, "grid")),
-        Group("Range", (depths, *(field for name in _DEPTHS for field in _span(case, name)))),
-        Group("Many impacts", _table(case, "impacts", ("depths", "impact"))),
+        Group("Velocities", (depths, *(field for name in _DEPTHS for field in _span(case, name)))),
+        Group("Grid", (Field("grid", "Grid", choices=_GRID), *grid), closed=True),
+        Group("Many impacts", _table(case, "impacts", ("depths", "impact")), closed=True),
         Group("Unloading and title", (*top, *_table(case, "unloading")), closed=True),
     ]
 
@@ -137,7 +147,15 @@ def _field(rule: Rule, name: str, when: tuple[str, ...] = ()) -> Field:
         page.initial,
         page.hint,
         page.more,
+        page.switch,
+        _plain(rule.key.meaning),
     )
+
+
+def _plain(markdown: str) -> str:
+    """The text without the targets of links and the marks of code."""
+    text = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", markdown)
+    return re.sub(r"[`\\]", "", text)
 
 
 def _span(case: type[Case], name: str) -> Iterator[Field]:

@@ -17,9 +17,11 @@ from restitution.curve.follow import Load, Unloading
 from restitution.display import quantity
 from restitution.runs.companions import coarser_contact
 from restitution.runs.depths import CaseUnloading, first_touch, load_to
+from restitution.theory import JKR
 
 _FEWEST_NODES, _FEWEST_DEPTHS = 32, 3  # of the coarsest level, along an edge of the grid
 _FEWEST_PER_RADIUS = 4  # nodes in the radius of a contact with the fewest depths
+_PER_ATTRACTION = 2.0  # how much larger a contact counts that attraction alone makes
 _ERROR = 0.02  # error of COR that previews accept from unloading and loading, each
 
 # Time (s) of solving for which the page waits rather than draw a coarser level first: a curve
@@ -54,8 +56,15 @@ class Ladder:
         self.case, self._contacts = case, [contact]
         deep = {depth: case.indentation_at(depth) for depth in case.depths()}
         cell, pair, limit = max(contact.grid.spacing), contact.pair, contact.hardness
-        # The nodes in the predicted radius of the contact at each depth.
-        self._nodes = {depth: predicted_radius(pair, deep[depth], limit) / cell for depth in deep}
+        # The nodes in the predicted radius of the contact at each depth. Adhesion widens shallow
+        # contacts to about the radius at which they detach.
+        least = 0.0
+        if contact.adhesion is not None and contact.adhesion.attracts:
+            smooth = JKR(pair.radius, pair.contact_modulus, contact.adhesion.work_of_adhesion)
+            least = _PER_ATTRACTION * float(smooth.pull_off_radius)
+        self._nodes = {
+            depth: max(predicted_radius(pair, deep[depth], limit), least) / cell for depth in deep
+        }
         count, factor = len(case.depths()), 1
         levels = [self._level(count, factor)]
         while True:

@@ -10,6 +10,8 @@ from tempfile import mkdtemp
 from typing import Any
 
 from restitution.app.figures import as_json, curve_figures, drawing
+from restitution.app.headline import headline
+from restitution.case.case import Case
 from restitution.case.case_file import parse_case
 from restitution.case.omissions import default_yield
 from restitution.errors import RestitutionError
@@ -18,9 +20,38 @@ from restitution.results.reader import RunResults, read_run
 from restitution.results.writer import ResultsFolder
 from restitution.runs.convergence import run_convergence
 from restitution.runs.ensemble import run_realisations
+from restitution.runs.error_budget import steps
 
 _KEPT = 4  # largest number of results folders that are kept
+_COMPANION, _PATHS = 0.2, 3  # time of a depth of a companion curve, and its most adhesive depths
 Check = Callable[[str], None]  # called with the progress; raises if the run is no longer wanted
+
+
+class Progress:
+    """How much of a run is done, from the words that it reports.
+
+    A depth counts 1, and a companion curve of the total error the share of its time.
+    """
+
+    def __init__(self, case: Case, grids: int) -> None:
+        depths = len(case.depths())
+        self._companion = _COMPANION * (
+            min(depths, _PATHS) if case.interface.adhesive_energy else depths
+        )
+        self._all = depths * case.realisations + self._companion * steps(case)
+        self._done, self._known = 0.0, grids == 1 and case.impacts is None
+
+    def after(self, words: str) -> float | None:
+        """The share that is done when `words` are reported; None if the steps are not known.
+
+        A depth is reported at its end, and a companion curve at its beginning.
+        """
+        if not self._known:
+            return None
+        begins = words.startswith("error")
+        share = (self._done if begins else self._done + 1.0) / self._all
+        self._done += self._companion if begins else 1.0
+        return min(share, 1.0)
 
 
 class Runs:
@@ -66,6 +97,7 @@ def results_line(out: Path) -> str:
         {
             "results": run.curve.rows,
             "figures": curve_figures(run.dataset),
+            **headline(run.curve.points, summary.get("sticking")),
             "information": default_yield(summary["model"]["yield_pressure"]),
             "warnings": summary["warnings"],
             "failure": "" if summary["status"] == "complete" else summary["reason"],

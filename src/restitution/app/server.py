@@ -15,6 +15,7 @@ import shutil
 from collections.abc import AsyncGenerator, AsyncIterator, Awaitable, Callable
 from functools import cache, partial
 from importlib.resources import files
+from pathlib import PurePath
 from typing import Any
 from urllib.parse import unquote
 
@@ -49,9 +50,12 @@ _VALUES: dict[str, dict[str, type]] = {
     "smooth": {"tab": str, "shown": str},
     "maps": {"tab": str, "depth": int},
     "run": {"tab": str, "content": dict, "grids": int},
+    "show": {"tab": str, "content": dict, "code": str, "velocity": str, "grids": int},
     "take": {"tab": str, "content": dict, "what": str, "code": str, "velocity": str, "grids": int},
 }
-_STATIC = {"app.js": "text/javascript", "app.css": "text/css"}
+_TYPES = {".js": "text/javascript", ".css": "text/css"}  # of the files in static/
+_STREAMED = "curve", "smooth", "maps", "run", "show"
+_PAGES = {"/": "page.html", "/help": "help.html"}
 Handler = Callable[[Request], Awaitable[Response]]
 
 
@@ -72,7 +76,7 @@ class Server:
                     Route(f"/api/{name}", self._guarded(handler), methods=["POST"])
                     for name, handler in self._handlers().items()
                 ),
-                Route("/", self._page),
+                *(Route(path, self._page) for path in _PAGES),
                 Route("/{name}", self._static),
             ],
         )
@@ -87,7 +91,7 @@ class Server:
             "start": self._start,
             "content": self._content,
             "text": self._text,
-            **{name: partial(self._stream, name) for name in ("curve", "smooth", "maps", "run")},
+            **{name: partial(self._stream, name) for name in _STREAMED},
             "take": self._take,
             "upload": self._upload,
         }
@@ -106,8 +110,8 @@ class Server:
 
         return answer
 
-    async def _page(self, _: Request) -> Response:
-        """Return the page, with a policy that allows only scripts and styles of this server."""
+    async def _page(self, request: Request) -> Response:
+        """Return the page, or its help; their policy allows only scripts of this server."""
         nonce = secrets.token_urlsafe(16)
         policy = (
             "default-src 'none'; script-src 'self'; connect-src 'self'; "
@@ -117,7 +121,7 @@ class Server:
             "form-action 'none'; base-uri 'none'; frame-ancestors 'none'"
         )
         return Response(
-            _file("page.html").replace("{{ nonce }}", nonce),
+            _file(_PAGES[request.url.path]).replace("{{ nonce }}", nonce),
             media_type="text/html",
             headers={"Content-Security-Policy": policy},
         )
@@ -126,9 +130,9 @@ class Server:
         name = request.path_params["name"]
         if name == "plotly.js":
             return Response(script(), media_type="text/javascript")
-        if name not in _STATIC:
+        if name not in _static_files():
             raise HTTPException(404, "there is no such page")
-        return Response(_file(name), media_type=_STATIC[name])
+        return Response(_file(name), media_type=_TYPES[PurePath(name).suffix])
 
     async def _start(self, _: Request) -> Response:
         return JSONResponse({"form": form(), "content": self._session.content})
@@ -172,13 +176,17 @@ class Server:
 
     async def _upload(self, request: Request) -> Response:
         """Store the scan that the user has given to the page, if it can be read."""
-        name = self._session.free_name(unquote(request.headers.get("x-file-name", "")))
+        given = unquote(request.headers.get("x-file-name", ""))
+        name = self._session.free_name(given)
         file = self._session.scans / name
         try:
             await _store(request, file)
         except BaseException:
             file.unlink(missing_ok=True)
             raise
+        if (same := self._session.stored(given, file)) is not None:
+            file.unlink()
+            name, file = same.name, same
         scan: dict[str, Any] = {}
         async for line in self._live.ask(request.headers.get("x-tab", ""), "read", file=name):
             scan.update(json.loads(line))
@@ -279,6 +287,12 @@ async def _store(request: Request, file: Any) -> None:
                 await asyncio.to_thread(out.write, part)
     except ClientDisconnect:
         raise HTTPException(400, "the upload is incomplete; drop the file again") from None
+
+
+@cache
+def _static_files() -> frozenset[str]:
+    names = (file.name for file in (files("restitution.app") / "static").iterdir())
+    return frozenset(name for name in names if PurePath(name).suffix in _TYPES)
 
 
 @cache

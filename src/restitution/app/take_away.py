@@ -22,6 +22,8 @@ from restitution.results.reader import read_run
 
 FIGURE_FORMATS: tuple[Format, ...] = ("svg", "png", "pdf")
 CASE_FILE = "case.toml"
+_BESIDE = {"", ".md", ".json"}  # suffixes of folders and of files beside the main one of an export
+_COMMENTS = ("#", "//", "<!--")
 
 
 def case_file(text: str, scans: Path, out: Path) -> Path:
@@ -47,20 +49,30 @@ def take(what: str, results: Path, out: Path, code: str, velocity: str) -> Path:
     if what == "report":
         return Path(shutil.copy(write_report(results), out))
     if what == "export":
-        given = velocity or None
         return _zipped(
             out / f"{code}.zip",
-            lambda folder: export(
-                results,
-                to=code,
-                out=folder / "export",
-                velocity=given,
-                coverage=_coverage(results),
-            ),
+            lambda folder: _export(results, code, velocity, folder / "export"),
         )
     if what not in _ARCHIVES:
         raise CaseError(f'"{what}" is not one of case, export, {", ".join(_ARCHIVES)}, report')
     return _zipped(out / f"{what}.zip", partial(_ARCHIVES[what], results))
+
+
+def lines_of(results: Path, code: str, velocity: str) -> tuple[str, str]:
+    """The main file of an export: its name, and its lines without comments and empty lines."""
+    with TemporaryDirectory() as name:
+        out = Path(name) / "export"
+        _export(results, code, velocity, out)
+        files = (path for path in sorted(out.rglob("*")) if path.suffix not in _BESIDE)
+        file = max(files, key=lambda path: path.name.startswith("restitution"))
+        lines = file.read_text(encoding="utf-8").splitlines()
+    said = (line for line in lines if line.strip() and not line.lstrip().startswith(_COMMENTS))
+    return file.name, "\n".join(said)
+
+
+def _export(results: Path, code: str, velocity: str, out: Path) -> None:
+    given = velocity or None
+    export(results, to=code, out=out, velocity=given, coverage=_coverage(results))
 
 
 def _coverage(results: Path) -> float | None:

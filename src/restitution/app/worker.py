@@ -6,7 +6,9 @@ kind and browser tab, and a new curve every request of its tab, at once: it inte
 
 from __future__ import annotations
 
+import json
 import os
+import re
 import signal
 import threading
 from collections.abc import Callable, Iterator
@@ -22,8 +24,10 @@ from typing import Any
 from restitution.app.content import problems_in
 from restitution.app.curve import LiveCurves
 from restitution.app.figures import as_json
-from restitution.app.runs import Runs, results_line
-from restitution.errors import RestitutionError, one_line
+from restitution.app.grid import with_grid
+from restitution.app.runs import Progress, Runs, results_line
+from restitution.case.case_file import parse_case
+from restitution.errors import CaseError, RestitutionError, one_line
 
 REPLACED = as_json({"replaced": True})
 _REPEAT_AFTER = 0.05  # time (s) after which an interrupt that came during an import comes again
@@ -161,12 +165,16 @@ class Worker:
     def answer(self, request: Request, send: Callable[[str], None]) -> None:
         """Send the answer to `request`, line by line."""
         self._send = send
-        text = request.values.get("text")
-        problems = problems_in(text, self._scans) if isinstance(text, str) else {}
-        if problems:
-            send(as_json({"problems": problems}))
-            return
-        for line in getattr(self, request.kind)(request.tab, **request.values):
+        values = dict(request.values)
+        if "text" in values:
+            with suppress(CaseError):  # `problems_in` reports it
+                values["text"], grid = with_grid(values["text"], self._scans)
+                if grid is not None and request.kind == "curve":
+                    send(as_json({"grid": grid}))
+            if problems := problems_in(values["text"], self._scans):
+                send(as_json({"problems": problems}))
+                return
+        for line in getattr(self, request.kind)(request.tab, **values):
             send(line)
 
     def curve(self, tab: str, text: str) -> Iterator[str]:
@@ -175,7 +183,7 @@ class Worker:
 
     def smooth(self, tab: str, shown: str) -> Iterator[str]:
         """Yield the smooth curve and the surface that belong to the last live curve."""
-        return self._curves.smooth(tab, shown, self._check)
+        return self._curves.smooth(tab, shown, self._scans, self._check)
 
     def maps(self, tab: str, depth: int) -> Iterator[str]:
         """Yield the contact maps at one depth of the last live curve."""
@@ -198,11 +206,24 @@ class Worker:
             file = take_away.take(what, self._folder(text, grids), out, code, velocity)
         yield as_json({"file": str(file.relative_to(self._room))})
 
+    def show(self, tab: str, text: str, code: str, velocity: str, grids: int) -> Iterator[str]:
+        """Yield the lines of an export without their comments, and the name of their file."""
+        from restitution.app import take_away
+
+        file, lines = take_away.lines_of(self._folder(text, grids), code, velocity)
+        yield as_json({"file": file, "text": lines})
+
     def read(self, tab: str, file: str) -> Iterator[str]:
         """Read a scan; yield its nodes and spacing, or what the form must add, and why."""
         from restitution.surfaces import read_surface
+        from restitution.surfaces.joined.read import HowToRead, read_spectra
+        from restitution.surfaces.reading.containers import is_container
         from restitution.surfaces.refused import RefusedSurfaceError
 
+        if is_container(self._scans / file):
+            scans = list(read_spectra(self._scans / file, HowToRead(undefined="interpolate")))
+            yield as_json({"scans": len(scans), "nodes": scans[0].surface.grid.nodes})
+            return
         try:
             surface = read_surface(self._scans / file, undefined="interpolate")
         except RefusedSurfaceError as error:
@@ -213,9 +234,11 @@ class Worker:
         yield as_json({"nodes": surface.grid.nodes, "spacing_m": surface.grid.spacing})
 
     def _folder(self, text: str, grids: int) -> Path:
+        progress = Progress(parse_case(text), grids)
+
         def report(words: str) -> None:
             self._check()
-            self._send(as_json({"progress": words}))
+            self._send(as_json({"progress": words, "share": progress.after(words)}))
 
         return self._runs.folder(text, self._scans, report, grids)
 
@@ -229,6 +252,15 @@ _NEEDED = {
 }
 
 
+def _send_without_folders(inbox: Inbox, number: int, room: Path, line: str | None) -> None:
+    """Send `line`; in messages, files in the temporary folder `room` have only their names."""
+    if line is not None:
+        folder = re.escape(json.dumps(str(room))[1:-1])
+        line = re.sub(f'{folder}/results-[^/:" ]+', "the results", line)
+        line = re.sub(f"{folder}/scans/", "", line)
+    inbox.send(number, line)
+
+
 def serve(connection: Connection, scans: Path, room: Path) -> None:
     """Answer requests until the parent process closes the connection or ends."""
     os.environ["MPLBACKEND"] = "agg"
@@ -236,7 +268,7 @@ def serve(connection: Connection, scans: Path, room: Path) -> None:
     worker = Worker(scans, room, inbox.check)
     while True:
         request = inbox.next()
-        send = partial(inbox.send, request.number)
+        send = partial(_send_without_folders, inbox, request.number, room)
         try:
             with inbox.stoppable():
                 worker.answer(request, send)

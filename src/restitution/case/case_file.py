@@ -21,7 +21,7 @@ from restitution.surfaces.generate import RoughnessKind
 _LARGEST = 2**22  # largest size of a case file (bytes)
 _DEEPEST = 32  # largest depth of nested tables and lists, and largest number of dots in a key
 _NAMED = 3  # largest number of wrong keys that a message names in addition to the first one
-_KINDS = (*get_args(RoughnessKind), "measured")
+_KINDS = (*get_args(RoughnessKind), "measured", "joined")
 
 
 def read_case(path: Path) -> tuple[Case, str]:

@@ -121,7 +121,9 @@ class InterfaceTable(Table):
         "energies](materials.md#work-of-adhesion) of the two materials. Without this key, a "
         "warning states the velocity below which adhesion matters",
         default='`"0 J/m^2"`',
-        page=Input("Work of adhesion w", hint="if empty, no adhesion", slider=(1e-4, 1.0)),
+        page=Input(
+            "Work of adhesion w", slider=(1e-4, 1.0), initial="0.05 J/m^2", switch="adhesion"
+        ),
     )
     adhesion: Adhesion | None = key(
         None,

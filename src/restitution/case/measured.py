@@ -73,7 +73,8 @@ def _ascending(value: tuple[float, float]) -> tuple[float, float]:
 Range = Annotated[tuple[Position, Position], BeforeValidator(_range), AfterValidator(_ascending)]
 
 
-def _unit_of_length(value: str) -> str:
+def unit_of_length(value: str) -> str:
+    """`value`, which must be a unit of length."""
     if in_metres(1.0, value) is None:
         raise ValueError(f"{shown(value)} is not a unit of length; give {UNITS}")
     return value
@@ -108,7 +109,7 @@ class MeasuredRoughness(Table):
         default="from the file",
         page=Input("Edge lengths", hint="if the file lacks them, or is wrong", more=True),
     )
-    height_unit: Annotated[str, AfterValidator(_unit_of_length)] | None = key(
+    height_unit: Annotated[str, AfterValidator(unit_of_length)] | None = key(
         None,
         'unit of the heights: `"m"`, `"mm"`, `"um"`, `"nm"` or `"pm"`; it replaces the unit in '
         "the file, with a warning if this differs",

@@ -7,6 +7,9 @@ from typing import Annotated
 from pydantic import Field
 
 from restitution.case.generated import GeneratedRoughness
+from restitution.case.joined import JoinedRoughness
 from restitution.case.measured import MeasuredRoughness
 
-Roughness = Annotated[GeneratedRoughness | MeasuredRoughness, Field(discriminator="kind")]
+Roughness = Annotated[
+    GeneratedRoughness | MeasuredRoughness | JoinedRoughness, Field(discriminator="kind")
+]

@@ -30,6 +30,7 @@ class Input:
         more: Whether the field is in the section "More".
         empty: Choice that leaves the key out.
         choices: Values of the key and their labels, where the schema does not list them.
+        switch: Label of a switch that sets the key to `initial` or leaves it out.
     """
 
     label: str
@@ -40,6 +41,7 @@ class Input:
     more: bool = False
     empty: str = ""
     choices: Callable[[], Mapping[str, str]] | None = None
+    switch: str = ""
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,7 @@ from restitution.runs.messages import failure_at_edge, input_warnings, no_range,
 from restitution.runs.refinement import least_refined
 from restitution.runs.two_scales import cost_in_words
 from restitution.surfaces import describe
+from restitution.surfaces.joined.advice import next_measurement
 from restitution.sweeps.sweep import parse_study
 
 
@@ -47,6 +48,13 @@ def check(case: Path) -> None:
             warnings.append(notice)
     if law := law_of_patches(contact):
         say(cost_in_words(law))
+    for part in read.roughness:
+        if part.kind == "joined":
+            joined, told = part.spectrum(case.parent), contact.surface.provenance
+            carried = 2 * max(contact.grid.spacing)
+            shortest = joined.shortest if "split_m" in told else carried
+            further = next_measurement(joined, shortest, 2 * max(contact.grid.size))
+            say(f"Next measurement: {further}.")
     for warning in warnings:
         warn(warning)
     ending = ", with warnings." if warnings else "."

@@ -1,8 +1,9 @@
 """`restitution surface`: describe the generated or measured surface of a case."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
 import xarray as xr
 from rich.table import Column, Table
@@ -12,8 +13,11 @@ from restitution.case.case_file import naming, read_case
 from restitution.cli.console import command, errors, print_numbers, say, say_next, say_written, warn
 from restitution.cli.parameters import FigureFormat
 from restitution.display import counted, quantity
+from restitution.pages.page import Cell
+from restitution.pages.scans import of_scans
 from restitution.pages.surface import PARAMETERS, scaled_parameter, write_surface_page
-from restitution.plots.static import write_figure
+from restitution.plots.joined import joined_figure
+from restitution.plots.static import write_figure, write_figures
 from restitution.plots.surface import surface_map
 from restitution.results.interruption import hold_signals
 from restitution.results.locking import locked
@@ -27,6 +31,9 @@ def surface(case: Path, out: Path, figures: FigureFormat) -> None:
     read, text = read_case(case)
     with naming(case), errors.status("making the surface"):
         made = read.surface(case.parent)
+        joined = [
+            part.spectrum(case.parent).told() for part in read.roughness if part.kind == "joined"
+        ]
         needs.require(needs.described_bytes(made.grid), made.grid)
     with locked(out):
         ResultsFolder(out)
@@ -44,10 +51,20 @@ def surface(case: Path, out: Path, figures: FigureFormat) -> None:
         with errors.status("writing the results"):
             with hold_signals():
                 write_netcdf(out / "surface.nc", dataset)
-                content = {**statistics, "warnings": warnings, "provenance": provenance}
+                content: dict[str, Any] = {
+                    **statistics,
+                    "warnings": warnings,
+                    "provenance": provenance,
+                }
+                content |= {"joined_spectra": joined} if joined else {}
                 write_json(out / "statistics.json", content)
                 write_checksums(out, ["statistics.json", "surface.nc"])
             picture = write_figure(out / "surface", surface_map(made, read.title), figures.value)
+            drawn = [
+                (f"joined-spectrum{f'-{number}' if number > 1 else ''}", joined_figure(told, made))
+                for number, told in enumerate(joined, 1)
+            ]
+            pictures = [picture, *write_figures(out, drawn, figures.value)]
             write_surface_page(out)
 
     table = Table("", Column(justify="right"), "", box=None, show_header=False)
@@ -58,12 +75,23 @@ def surface(case: Path, out: Path, figures: FigureFormat) -> None:
             shown = quantity(statistics[key], "m")  # the range of lengths is wide
         table.add_row(name, *shown.split(" ", 1))
     print_numbers(table)
+    for parts in of_scans(provenance):
+        print_numbers(_scans(parts.rows))
     for line in _about_scans(provenance):
         say(line)
     for warning in warnings:
         warn(warning)
-    say_written(out, ["surface.nc", "statistics.json", picture.name, "surface.html"])
+    names = [file.name for file in pictures]
+    say_written(out, ["surface.nc", "statistics.json", *names, "surface.html"])
     say_next(command("run", case, "-o", "OUT"))
+
+
+def _scans(rows: Sequence[Sequence[Cell]]) -> Table:
+    table = Table("scan", "waves", "", "ends at", Column("Rq", justify="right"), box=None)
+    for name, _, _, _, shortest, longest, ends, rms, _ in rows:
+        low, high, height = (quantity(float(value or 0), "m") for value in (shortest, longest, rms))
+        table.add_row(str(name), low, f"to {high}", str(ends), height)
+    return table
 
 
 def _about_scans(provenance: dict[str, str | float]) -> Iterator[str]:

@@ -44,9 +44,16 @@ def fitted_case(fit: Fit, out: Path) -> str:
     rough = content.get("roughness", [])
     for part in rough if isinstance(rough, list) else [rough]:
         part["realisations"] = fit.model.surfaces
-        if "file" in part:
-            part["file"] = Path(os.path.relpath(fit.model.folder / part["file"], out)).as_posix()
+        for table in (part, *part.get("scan", ())):
+            if "file" in table:
+                table["file"] = _moved(fit.model.folder, table["file"], out)
+        if "scans" in part:
+            part["scans"] = [_moved(fit.model.folder, name, out) for name in part["scans"]]
     return tomli_w.dumps(content)
+
+
+def _moved(folder: Path, name: str, out: Path) -> str:
+    return Path(os.path.relpath(folder / name, out)).as_posix()
 
 
 def fit_rows(fit: Fit) -> list[dict[str, float | str]]:

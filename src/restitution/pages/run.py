@@ -20,6 +20,7 @@ from restitution.pages.answer import answer_of
 from restitution.pages.methods import methods
 from restitution.pages.page import Cell, Drawing, Listing, Page, PageTable, write_page
 from restitution.pages.run_in import run_in_parts
+from restitution.pages.scans import of_scans
 from restitution.pages.words import column_unit, table_of
 from restitution.plots.cor import Abscissa
 from restitution.plots.oblique import has_oblique, oblique_figure
@@ -69,6 +70,7 @@ def write_run_page(out: Path, velocity: float | None = None) -> Path:
         parts=parts,
         details=[
             *details,
+            *of_scans(summary.get("surface", {})),
             *groups(summary),
             _diagnostics(results, summary),
             Listing("Case file", results.attrs["case"]),

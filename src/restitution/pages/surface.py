@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from itertools import repeat
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ import numpy as np
 from restitution.display import quantity
 from restitution.numerics.grid import Grid
 from restitution.pages.page import Cell, Drawing, Page, PageTable, write_page
+from restitution.pages.scans import joined_drawing, of_scans
 from restitution.pages.words import table_of
 from restitution.plots.figure import Map
 from restitution.plots.interactive import shown_step
@@ -89,8 +91,10 @@ def write_surface_page(out: Path) -> Path:
             _heights(surface, statistics),
             _autocorrelation(surface),
             _spectrum(surface),
+            *map(joined_drawing, statistics.get("joined_spectra", []), repeat(surface)),
         ],
         details=[
+            *of_scans(provenance),
             table_of("Origin", {k: value for k, value in provenance.items() if k != "notice"}),
             _methods(surface),
         ],

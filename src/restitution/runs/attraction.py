@@ -125,6 +125,8 @@ def curve_errors(
         values = np.array([own, *map(quantity_of, companions.others())])
         half = half_interval(len(values)) * values.std(axis=0, ddof=1)
         errors.append(np.abs(own - values.mean(axis=0)) + half)
+    if spectra := companions.spectra():
+        errors.append(np.max([np.abs(quantity_of(curve) - own) for curve in spectra], axis=0))
     if scales := companions.scales():
         errors.append(scales.error(quantity_of, companions.area_at_pull_off))
     for ends in companions.material_ends():

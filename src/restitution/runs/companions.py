@@ -45,6 +45,8 @@ ENDS = ("low", "high")  # of the spread of a library value
 SURFACES = 7  # number of additional surfaces from which the scatter is estimated
 _MOST_PATHS = 3  # largest number of impacts of other companion curves that follow a path
 
+_DEVIATIONS = 2.0  # of a joined spectrum of scans
+
 # Error of a bound that grows if patches have one of their own, beside that of a fine grid.
 _OF_GROWTH = 0.06
 # Scatter between patches of a run, divided by that between its companion's, whose waves are twice
@@ -170,6 +172,16 @@ class Companions:
             self._others.append(self._curve(self._coarse(self.case.variant(number))))
         return self._others
 
+    def spectra(self, progress: Say = ignore) -> list[WorkCurve]:
+        """Curves with joined spectra of scans at both ends of their uncertainty; none without."""
+        if not self._spectra and any(part.kind == "joined" for part in self.case.roughness):
+            progress("error: joined spectrum")
+            self._spectra.extend(
+                self._curve(self._coarse(with_deviations(self.case, number)))
+                for number in (-_DEVIATIONS, _DEVIATIONS)
+            )
+        return self._spectra
+
     def scales(self, progress: Say = ignore) -> ScaleCurves | None:
         """Curves that show the errors of waves below the grid; None without such waves."""
         if not self._scales:
@@ -189,6 +201,10 @@ class Companions:
         """Contact area (m²) of smooth bodies at pull-off, with the adhesion that is left."""
         law, pair = law_of_patches(self.coarse), self.coarse.pair
         return math.pi * pair.radius * law.length(pair) if law is not None else math.inf
+
+    @cached_property
+    def _spectra(self) -> list[WorkCurve]:
+        return []
 
     @cached_property
     def _scales(self) -> list[ScaleCurves]:
@@ -323,6 +339,17 @@ def coarser_contact(contact: Contact) -> Contact:
         return new
     coarser = replace(coarser, provenance={**coarser.provenance, COMPANION: True})
     return replace(contact, surface=coarser)
+
+
+def with_deviations(case: Case, number: float) -> Case:
+    """`case` with joined spectra of scans raised by a `number` of standard deviations."""
+    parts = tuple(
+        part.model_copy(update={"deviations": part.deviations + number})
+        if part.kind == "joined"
+        else part
+        for part in case.roughness
+    )
+    return case.model_copy(update={"roughness": parts})
 
 
 def _with_modulus_of(pair: Pair, other: Pair) -> Pair:

@@ -49,9 +49,13 @@ _OF_IMPACTS = (
 _OF_ONE = ("model", "materials", "conventions", "derived", "device", "kernels", "versions")
 
 
+def _known(*values: float) -> list[float]:
+    return [value for value in values if not math.isnan(value)]
+
+
 def _of_known(values: list[float]) -> float:
     """Mean of the known values; surfaces that stick have no factor."""
-    known = [value for value in values if not math.isnan(value)]
+    known = _known(*values)
     return float(np.mean(known)) if known else math.nan
 
 
@@ -238,8 +242,9 @@ def mean_points(curves: Sequence[Sequence[Point]], errors: Sequence[Point] = ())
     confidence interval of the mean COR is mean ± t s/√n, clipped to [0, 1]; NaN for one surface.
 
     `errors` are the points of one surface, whose errors due to grid and materials are taken over.
-    `surface_scatter` is half of the width of the confidence interval. The total error of a depth
-    that only one surface reached stays unknown.
+    `surface_scatter` is half of the width of the confidence interval, and the uncertainty of a
+    joined spectrum of scans. The total error of a depth that only one surface reached stays
+    unknown.
     """
     count = max(map(len, curves), default=0)
     alone: list[Point | None] = [
@@ -277,7 +282,7 @@ def _mean(surfaces: Sequence[Point], errors: Point | None) -> MeanPoint:
         discretisation_error=errors.discretisation_error,
         material_error=errors.material_error,
         resolved=mean.resolved and errors.resolved,
-        surface_scatter=half,
+        surface_scatter=math.hypot(half, *_known(errors.surface_scatter)),
         pull_off_error=math.hypot(errors.pull_off_error, half_pull_off),
     )
     return replace(mean, total_error=mean.combined_error) if n > 1 else mean

@@ -172,6 +172,7 @@ def spread_errors(
 ) -> dict[str, Array]:
     """`surface_scatter` and `material_error` of COR at `work` (J), as far as the case has them.
 
+    `surface_scatter` includes the uncertainty of a joined spectrum of scans.
     The contributions of the library values are appended to `parts`.
     """
     case = companions.case
@@ -181,6 +182,11 @@ def spread_errors(
         columns["surface_scatter"] = scatter(
             np.array([companions.reference.at(work), *others]), work
         )
+    if spectra := companions.spectra(progress):
+        own = companions.reference.at(work)
+        changes = [np.abs(curve.at(work) - own) for curve in spectra]
+        known = columns.get("surface_scatter", np.zeros(work.size))
+        columns["surface_scatter"] = np.hypot(known, np.max(changes, axis=0))
     if case.has_library_values():
         progress("error: materials")
         changes = companions.materials(work)
@@ -307,8 +313,10 @@ def interrupted_errors(case: Case, points: Sequence[Point], status: str) -> Iter
 def included(case: Case) -> list[str]:
     """List the parts of the total error of a curve of `case`, in words."""
     words = ["solver", "grid"]
-    if any(part.kind == "measured" for part in case.roughness):
+    if any(part.kind in ("measured", "joined") for part in case.roughness):
         words.append("waves of the scan that the grid leaves out")
+    if any(part.kind == "joined" for part in case.roughness):
+        words.append("uncertainty of the joined spectrum")
     if case.roughness:
         n = case.realisations
         words.append(
@@ -326,7 +334,8 @@ def steps(case: Case) -> int:
     if not case.total_error:
         return 0
     surfaces = SURFACES if case.roughness and case.realisations == 1 else 0
-    return 1 + surfaces + int(case.has_library_values())
+    joined = any(part.kind == "joined" for part in case.roughness)
+    return 1 + surfaces + int(joined) + int(case.has_library_values())
 
 
 def _floor(point: Point) -> float:

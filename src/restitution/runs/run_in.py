@@ -58,7 +58,8 @@ def require_run_in(case: Case, contact: Contact) -> None:
     if not repeats(contact.surface):
         raise CaseError(
             "roughness.file: opposite edges of the scan do not match, so it does not repeat, as "
-            '[impacts] needs; set roughness.extend = "twin"'
+            '[impacts] needs; set roughness.extend = "twin", or roughness.periodic = true if '
+            'kind = "joined"'
         )
 
 

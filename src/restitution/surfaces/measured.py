@@ -119,6 +119,13 @@ def read_surface(
     return Surface(fill_harmonically(heights, grid.spacing), grid, provenance)
 
 
+def states(path: Path, channel: int | None = None) -> tuple[bool, bool]:
+    """Whether a topography file itself states the size of its scan, and the unit of its heights."""
+    _check_readable(path)
+    scan = _read_scan(path, channel)
+    return None not in scan.size, scan.unit is not None and scan.stated
+
+
 def _check_arguments(
     undefined: str, size: tuple[float, float] | None, height_unit: str | None
 ) -> None:

@@ -48,7 +48,7 @@ def power_spectral_density(surface: Surface) -> Array:
     if is_periodic(surface):
         power += np.abs(fft2(z)) ** 2
     else:
-        for a, b in product(*(_tapers(n) for n in z.shape)):
+        for a, b in product(*(tapers(n) for n in z.shape)):
             power += np.abs(fft2(z * a[:, None] * b[None, :])) ** 2 / _TAPERS**2
     power *= surface.grid.cell_area / z.size
     return power
@@ -99,6 +99,7 @@ def wave_numbers(nodes: tuple[int, ...], spacing: tuple[float, float]) -> Array:
     return np.asarray(np.hypot(qx[:, None], qy[None, :]))
 
 
-def _tapers(n: int) -> list[Array]:
+def tapers(n: int) -> list[Array]:
+    """The sine tapers of `n` points, with a mean square of 1."""
     at = (np.arange(n) + 1) * math.pi / (n + 1)
     return [math.sqrt(2 * n / (n + 1)) * np.sin(k * at) for k in range(1, _TAPERS + 1)]

@@ -21,13 +21,14 @@ from restitution.surfaces.psd import power_spectral_density, radial_spectrum
 from restitution.surfaces.refused import RefusedSurfaceError
 from restitution.surfaces.resample import carried, crop_to, left_out, place_on_grid
 from restitution.surfaces.surface import Array, Surface, noted
-from restitution.surfaces.wave_spectrum import Modes, WaveSpectrum, spectrum_of
+from restitution.surfaces.wave_spectrum import Modes, TwinWaves, spectrum_of
 
 LEAST_PIXELS = 16  # smallest number of pixels of a scan along each axis
 # The shortest waves are not adjusted. They hold less than this share of the mean square height.
 _UNADJUSTED = 0.01
 _FIRST_BAND = 2**20  # largest number of nodes of the grid for the first band (the longest waves)
 _LEAST_FIRST = 8  # smallest number of cells along each edge of the scan in the first band's grid
+_LEAST_WAVES = 3  # waves along each edge of a band; those of a twin as large as the scan have more
 
 # A band is adjusted at most _WORK/n times, where n is the number of nodes of its grid. If _WORK/n
 # is outside the range _ADJUSTMENTS, the nearest limit of this range applies instead.
@@ -65,8 +66,7 @@ def twin(scan: Surface, grid: Grid, seed: int) -> Surface:
         for n, s, g in zip(grid.nodes, scan.grid.size, grid.size, strict=True)
     )
     whole = Grid((nx, ny), grid.spacing)
-    spectrum = spectrum_of(scan, whole.size)
-    height = _heights(_adjusted(spectrum, scan, whole, seed), whole.nodes)
+    height = adjusted_heights(spectrum_of(scan, whole.size), scan, whole, seed)
     made = Surface(crop_to(height, grid.nodes), grid)
     return replace(made, provenance=_provenance(scan, made, seed, periodic=whole == grid))
 
@@ -95,10 +95,21 @@ def _check(scan: Surface, grid: Grid) -> None:
         )
 
 
-def _adjusted(spectrum: WaveSpectrum, scan: Surface, grid: Grid, seed: int) -> Modes:
+def adjusted_heights(spectrum: TwinWaves, scan: Surface | None, grid: Grid, seed: int) -> Array:
+    """Heights (m) of the waves of `spectrum` on `grid`, which is as large as their period.
+
+    They are distributed as those of `scan`; without it, phases stay random.
+    """
+    return _heights(_adjusted(spectrum, scan, grid, seed), grid.nodes)
+
+
+def _adjusted(spectrum: TwinWaves, scan: Surface | None, grid: Grid, seed: int) -> Modes:
     modes: Modes = np.zeros((1, 1), dtype=np.complex128)
     most = 0, 0
-    for cell in _bands(spectrum, scan):
+    for cell in [] if scan is None else _bands(spectrum, scan):
+        if min(spectrum.numbers(cell)) < _LEAST_WAVES:
+            continue
+        assert scan is not None
         modes, most = _band(spectrum, scan, cell, seed, modes, most)
         if all(c <= h for c, h in zip(cell, grid.spacing, strict=True)):
             break
@@ -108,7 +119,7 @@ def _adjusted(spectrum: WaveSpectrum, scan: Surface, grid: Grid, seed: int) -> M
     return full
 
 
-def _bands(spectrum: WaveSpectrum, scan: Surface) -> list[tuple[float, float]]:
+def _bands(spectrum: TwinWaves, scan: Surface) -> list[tuple[float, float]]:
     """The largest cell (m) that resolves the waves of each band, from long to short waves."""
     most = (1 - _UNADJUSTED) * float(np.var(scan.height))
 
@@ -127,7 +138,7 @@ def _bands(spectrum: WaveSpectrum, scan: Surface) -> list[tuple[float, float]]:
 
 
 def _band(
-    spectrum: WaveSpectrum,
+    spectrum: TwinWaves,
     scan: Surface,
     cell: tuple[float, float],
     seed: int,

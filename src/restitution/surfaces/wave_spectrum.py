@@ -9,6 +9,7 @@ does not give these values, because the tapers give the rim of the scan less wei
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -28,17 +29,50 @@ _ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
-class WaveSpectrum:
-    """Mean square heights of the waves of a twin with the edges `period` = (Px, Py), in metres.
+class TwinWaves(ABC):
+    """The waves of a twin with the edges `period` = (Px, Py), in metres.
 
-    The wave (m, n) has the wave vector 2π(m/Px, n/Py). `density` is the mean square height (m²) of
-    single waves before the factor a + b/k²; the zero wave vector is in the middle.
+    The wave (m, n) has the wave vector 2π(m/Px, n/Py); `pixel` (m) is half of the shortest wave.
+    """
+
+    pixel: tuple[float, float]
+    period: tuple[float, float]
+
+    @abstractmethod
+    def power(self, m: NDArray[np.int64], n: NDArray[np.int64]) -> Array:
+        """Mean square height (m²) of each wave (m, n), shape (m.size, n.size)."""
+
+    def numbers(self, spacing: tuple[float, float]) -> tuple[int, int]:
+        """Largest m and n of the waves that the scan and cells of size `spacing` resolve."""
+        most = [
+            max(math.ceil(0.5 * edge / max(h, pixel) * (1 - _ROUNDING)) - 1, 0)
+            for edge, h, pixel in zip(self.period, spacing, self.pixel, strict=True)
+        ]
+        return most[0], most[1]
+
+    def modes(self, most: tuple[int, int], nodes: tuple[int, int], seed: int) -> Modes:
+        """Waves up to `most` with random phases, in the order of `rfft2` (norm "forward")."""
+        M, N = most
+        full: Modes = np.zeros((nodes[0], nodes[1] // 2 + 1), dtype=np.complex128)
+        n = np.arange(N + 1)
+        rows = max(1, _ROWS // (N + 1))
+        for first in range(-M, M + 1, rows):
+            m = np.arange(first, min(first + rows, M + 1))
+            phases = wave_phases(seed, m, N + 1)
+            full[m, : N + 1] = np.sqrt(self.power(m, n)) * np.exp(1j * phases)
+        return full
+
+
+@dataclass(frozen=True)
+class WaveSpectrum(TwinWaves):
+    """Mean square heights of the waves of a twin of one scan.
+
+    `density` is the mean square height (m²) of single waves before the factor a + b/k²; the zero
+    wave vector is in the middle.
     """
 
     density: Array
     waves: tuple[float, float]  # period of the twin divided by the size of the scan, along x and y
-    pixel: tuple[float, float]  # pixel of the scan (m)
-    period: tuple[float, float]
     flat: float = 1.0  # a in the factor a + b/k² (see the top of this file)
     steep: float = 0.0  # b in the factor a + b/k²
 
@@ -59,33 +93,13 @@ class WaveSpectrum:
         C[k2 < 1 - _ROUNDING] = 0.0
         return C, k2
 
-    def numbers(self, spacing: tuple[float, float]) -> tuple[int, int]:
-        """Largest m and n of the waves that the scan and cells of size `spacing` resolve."""
-        most = [
-            math.ceil(0.5 * edge / max(h, pixel) * (1 - _ROUNDING)) - 1
-            for edge, h, pixel in zip(self.period, spacing, self.pixel, strict=True)
-        ]
-        return most[0], most[1]
-
-    def modes(self, most: tuple[int, int], nodes: tuple[int, int], seed: int) -> Modes:
-        """Waves up to `most` with random phases, in the order of `rfft2` (norm "forward")."""
-        M, N = most
-        full: Modes = np.zeros((nodes[0], nodes[1] // 2 + 1), dtype=np.complex128)
-        n = np.arange(N + 1)
-        rows = max(1, _ROWS // (N + 1))
-        for first in range(-M, M + 1, rows):
-            m = np.arange(first, min(first + rows, M + 1))
-            phases = wave_phases(seed, m, N + 1)
-            full[m, : N + 1] = np.sqrt(self.power(m, n)) * np.exp(1j * phases)
-        return full
-
 
 def spectrum_of(scan: Surface, period: tuple[float, float]) -> WaveSpectrum:
     """Spectrum of a twin of `scan`; `period` contains the edges (m) of the twin."""
     C = np.fft.fftshift(power_spectral_density(scan))
     waves = tuple(p / s for p, s in zip(period, scan.grid.size, strict=True))
     C *= 1 / (scan.grid.size[0] * scan.grid.size[1] * waves[0] * waves[1])
-    raw = WaveSpectrum(C, (waves[0], waves[1]), scan.grid.spacing, period)
+    raw = WaveSpectrum(scan.grid.spacing, period, C, (waves[0], waves[1]))
     wanted = float(np.var(scan.height)), rms_slope(scan) ** 2
     moments = _moments(raw)  # here a = 1 and b = 0, so the factor a + b/k² is 1
     a, b = wanted[0] / moments[0, 0], 0.0

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from restitution.errors import SurfaceError
 from restitution.surfaces.reading.scan import Y_DOWN, LineScanError, Scan, in_metres
@@ -67,6 +68,33 @@ def read_instrument(
                 f"{path}: its heights cannot be read ({_first_line(error)}); export it again, or "
                 "export it as a text matrix of heights"
             ) from error
+
+
+def read_instrument_line(
+    path: Path, channel: int | None
+) -> tuple[NDArray[np.float64], NDArray[np.float64], bool] | None:
+    """Positions and heights of a line scan, and whether they are in metres; None for a map.
+
+    Raises the errors of `read_instrument`.
+    """
+    with _quiet():
+        package = _import_readers(path)
+        try:
+            reader = _open(package, path, None, None)
+            with contextlib.closing(reader):
+                channels = [one for one in reader.channels if one.dim == 1]
+                if not channels:
+                    return None
+                chosen = channels[0] if channel is None else reader.channels[channel]
+                sized = chosen.physical_sizes is not None
+                line = chosen.topography(physical_sizes=None if sized else chosen.nb_grid_pts)
+                x, z = line.positions_and_heights()
+        except Exception as error:
+            raise UnrecognisedError(f"{path}: {_why_unreadable(error, path, None)}") from error
+    factor = in_metres(1.0, line.unit)
+    scale = 1.0 if factor is None else factor
+    heights = np.ma.filled(np.ma.asarray(z, dtype=np.float64), np.nan)
+    return np.asarray(x, dtype=np.float64) * scale, heights * scale, factor is not None
 
 
 def _open(package: Any, path: Path, content: bytes | None, form: str | None) -> Any:

@@ -1,0 +1,1 @@
+"""Several scans of one surface: their joined power spectrum and its twin."""
