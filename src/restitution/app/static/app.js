@@ -501,7 +501,7 @@ function drawCurves() {
   const line = (x) => ({ type: "line", yref: "paper", y0: 0, y1: 1, x0: x, x1: x, line: { color: css("--soft"), width: 1 } });
   const shapes = at && at[KEYS[what]] > 0 ? [line(scale * at[KEYS[what]])] : [];
   const others = [...(curve.under ? [underneath(curve.under)] : []), ...pins];
-  const traces = others.map((other) => pinTrace(other, KEYS[what], scale, "restitution"));
+  const traces = [...modelBand(KEYS[what], scale), ...others.map((other) => pinTrace(other, KEYS[what], scale, "restitution"))];
   draw("cor", told(curve.figures[what]), traces, shapes);
   draw("force", told(curve.figures.force), others.map((other) => pinTrace(other, "max_indentation_m", 1e6, "force_N")), at ? [line(1e6 * at.max_indentation_m)] : []);
   const cors = curve.rows.map((row) => row.restitution);
@@ -522,6 +522,20 @@ function told(spec) {
 }
 
 const underneath = ({ rows, preview }) => ({ rows, name: escaped(previewOf({ preview })), colour: css("--soft"), dash: "dash" });
+
+// The band of COR ± the error of the plasticity model. The live curve has this error, but no total error.
+function modelBand(key, scale) {
+  const rows = curve.rows.filter((row) => row[key] > 0);
+  const edge = (sign) => ({
+    type: "scatter", mode: "lines", line: { width: 0 }, hoverinfo: "skip", x: rows.map((row) => scale * row[key]),
+    y: rows.map((row) => Math.min(1, Math.max(0, row.restitution + sign * row.model_error))),
+  });
+  if (!rows.some((row) => row.model_error > 0)) return [];
+  return [
+    { ...edge(-1), showlegend: false },
+    { ...edge(1), fill: "tonexty", fillcolor: "rgba(0,114,178,0.15)", name: "± error of the model" },
+  ];
+}
 
 function pinTrace(pin, key, scale, quantity) {
   const rows = pin.rows.filter((row) => row[key] > 0);
