@@ -62,6 +62,7 @@ def test_an_ensemble(reported, case_text, opened):
     assert 'data-drawn="4"' in drawn
     assert "95 % interval of the mean" in own(page)
     assert "means of 2 surfaces" in own(page)
+    assert "; rough, mean of 2 surfaces</p>" in own(page)
 
 
 def test_a_convergence(reported):

@@ -145,10 +145,10 @@ def body_in_words(body: Particle) -> str:
 
 
 def _surface(run: RunResults) -> str:
-    statistics = run.summary.get("surface_statistics", {})
-    height = statistics.get("Sq_m")
-    rough = f"Sq {si(height, 'm')}" if height else "smooth"
-    means = (
-        f", mean of {counted(run.surfaces, 'surface')}" if isinstance(run, EnsembleResults) else ""
-    )
-    return f"{rough}{means}"
+    height = run.summary.get("surface_statistics", {}).get("Sq_m")
+    rough = "rough" if run.case.roughness else "smooth"
+    if height:
+        rough = f"Sq {si(height, 'm')}"
+    if isinstance(run, EnsembleResults):
+        return f"{rough}, mean of {counted(run.surfaces, 'surface')}"
+    return rough

@@ -123,7 +123,7 @@ def _restitution(results: xr.Dataset, abscissa: Abscissa) -> Drawing:
     few = int(np.count_nonzero(~resolved))
     return Drawing(
         f"Restitution against {words}",
-        restitution_figure(results, abscissa),
+        restitution_figure(results, abscissa, whole=True),
         f"Coefficient of restitution{_span(cor, '.3f')} against {words}{_span(x, '.3g')} {unit}",
         f"Open markers ({few} of {cor.size}): not resolved by the grid, because at least half of "
         f"the contact is in patches of fewer than {NODES_PER_PATCH} nodes, or the cells are too "

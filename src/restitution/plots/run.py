@@ -61,7 +61,7 @@ def run_figures(results: xr.Dataset) -> Iterator[tuple[str, Figure]]:
         return
     yield "load-displacement", load_displacement(results)
     for abscissa in abscissae(results):
-        yield f"restitution-{abscissa.name}", restitution_figure(results, abscissa)
+        yield f"restitution-{abscissa.name}", restitution_figure(results, abscissa, whole=True)
     if has_map(results):
         yield "pressure", pressure_map(results)
     if has_patches(results):
@@ -162,7 +162,11 @@ def pressure_map(results: xr.Dataset) -> Figure:
     return Figure(results.attrs.get("title", ""), panels)
 
 
-def restitution_figure(results: xr.Dataset, abscissa: Abscissa) -> Figure:
+def restitution_figure(results: xr.Dataset, abscissa: Abscissa, *, whole: bool = False) -> Figure:
+    """Draw COR; the `whole` figure has what the live page draws itself.
+
+    This is the band of the error of the model, and the rise of COR at the sticking velocity.
+    """
     scale, variable = abscissa.scale, abscissa.variable
     x, cor = scale * results[variable].values, results["restitution"].values
     series: list[Series] = []
@@ -180,7 +184,7 @@ def restitution_figure(results: xr.Dataset, abscissa: Abscissa) -> Figure:
         for coarser, dash in zip(results.get("coarser_restitution", ()), _DASHES, strict=False)
     ]
     model = results["model_error"].values
-    if np.nanmax(model, initial=0.0) > 0:
+    if whole and np.nanmax(model, initial=0.0) > 0:
         low, high = np.clip(cor - model, 0.0, 1.0), np.clip(cor + model, 0.0, 1.0)
         series.append(Band(x, low, high, MODEL_BAND, GREY, DOTTED))
     error, error_label = bars(cor, results["total_error"].values)
@@ -194,7 +198,7 @@ def restitution_figure(results: xr.Dataset, abscissa: Abscissa) -> Figure:
             error_label=error_label,
             open=~results["resolved"].values.astype(bool),
             open_label=UNRESOLVED,
-            via=_onset(results, abscissa),
+            via=_onset(results, abscissa) if whole else None,
         )
     )
     with_losses = results["restitution_with_losses"].values
