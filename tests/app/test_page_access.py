@@ -35,10 +35,10 @@ def test_axe_finds_no_serious_fault(app, open_page, axe, width, scheme):
     page.evaluate("for (const one of document.querySelectorAll('details')) one.open = true")
     page.get_by_role("button", name="What is e?").click()
     page.evaluate(axe)
-    found = page.evaluate("async () => (await axe.run()).violations")
+    faults = page.evaluate("async () => (await axe.run()).violations")
     serious = [
         (fault["id"], fault["help"], [node["html"][:120] for node in fault["nodes"][:3]])
-        for fault in found
+        for fault in faults
         if fault["impact"] in ("serious", "critical")
     ]
     assert serious == []
@@ -50,8 +50,8 @@ def test_a_wrong_name_is_found_by_axe(app, open_page, axe):
     computed(page)
     page.evaluate("document.getElementById('pin').textContent = ''")
     page.evaluate(axe)
-    found = page.evaluate("async () => (await axe.run()).violations.map((fault) => fault.id)")
-    assert "button-name" in found
+    faults = page.evaluate("async () => (await axe.run()).violations.map((fault) => fault.id)")
+    assert "button-name" in faults
 
 
 def tab_to(page, target, most=150):

@@ -39,9 +39,9 @@ def test_curves_and_bands_have_enough_contrast(app, open_page, scheme):
     rest(page)
     page.evaluate("for (let k = 0; k < 5; k++) document.getElementById('pin').click()")
     expect(page.locator("#cor .legendtext", has_text="pin 5")).to_have_count(1)
-    found = {*colours(page, "cor"), *colours(page, "force")}
-    assert len(found) > 7
-    low = {one: page.evaluate(CONTRAST, one) for one in found}
+    drawn = {*colours(page, "cor"), *colours(page, "force")}
+    assert len(drawn) > 7
+    low = {one: page.evaluate(CONTRAST, one) for one in drawn}
     assert {one: ratio for one, ratio in low.items() if ratio < LEAST} == {}
 
 

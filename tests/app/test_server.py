@@ -77,7 +77,7 @@ def test_another_kind_of_content_is_refused(app, kind):
     assert status == 415
 
 
-@pytest.mark.parametrize("name", ["start", "curve", "run", "take", "upload", "content"])
+@pytest.mark.parametrize("name", ["start", "curve", "run", "take", "show", "upload", "content"])
 def test_get_has_no_effects(app, name):
     assert app.ask("GET", f"/api/{name}")[0] in (404, 405)
 

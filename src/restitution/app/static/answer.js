@@ -7,15 +7,16 @@ import { $, button, element, state } from "./state.js";
 import { parsed, quantity, withError } from "./units.js";
 
 const FIRST = 1; // velocity (m/s) of the answer unless a reader has typed one
+const NEAR = 1e-3; // relative difference of a computed velocity from the one in the case
 let typed = false;
 
 // Values at `velocity` (m/s), linear in ln V between the nearest of many; null outside them.
 export function at(velocity, between) {
   if (!between || !velocity) return null;
-  const V = between.velocity, near = 1e-6;
-  if (velocity < V[0] * (1 - near) || velocity > V[V.length - 1] * (1 + near)) return null;
-  const after = Math.max(1, V.findIndex((v) => v >= velocity * (1 - near)));
-  if (V.length === 1) return Object.fromEntries(Object.entries(between).map(([name, values]) => [name, values[0]]));
+  const V = between.velocity, last = V.length - 1;
+  if (velocity < V[0] * (1 - NEAR) || velocity > V[last] * (1 + NEAR)) return null;
+  const after = velocity >= V[last] ? last : Math.max(1, V.findIndex((v) => v >= velocity));
+  if (!last) return Object.fromEntries(Object.entries(between).map(([name, values]) => [name, values[0]]));
   const share = Math.min(1, Math.max(0, Math.log(velocity / V[after - 1]) / Math.log(V[after] / V[after - 1])));
   return Object.fromEntries(Object.entries(between).map(([name, values]) => {
     const [a, b] = [values[after - 1], values[after]];
@@ -35,7 +36,7 @@ export function drawAnswer() {
   const { curve } = state, { between } = curve;
   if (!typed && between) {
     const V = between.velocity, low = V[0], high = V[V.length - 1];
-    const inside = FIRST >= low && FIRST <= high ? FIRST : Math.max(low, Math.min(high, rounded(0.5 * high)));
+    const inside = FIRST >= low && FIRST <= high * (1 + NEAR) ? FIRST : Math.max(low, Math.min(high, rounded(0.5 * high)));
     $("answer-velocity").value = quantity(inside, "m/s", 3);
   }
   const V = answerVelocity(), here = at(V, between);

@@ -64,9 +64,9 @@ function ticks(layout, traces, name, narrow) {
   const [unit, factor] = UNITS[title[2]];
   if (axis.type === "log") {
     const [low, high] = axis.range || [-9, 2];
-    const each = high - low > (narrow ? 1 : 2.2) ? [1] : [1, 2, 5];
+    const steps = high - low > (narrow ? 1 : 2.2) ? [1] : [1, 2, 5];
     const decades = Array.from({ length: Math.ceil(high) - Math.floor(low) + 7 }, (_, k) => Math.floor(low) - 3 + k);
-    const values = decades.flatMap((k) => each.map((digit) => Number(`${digit}e${k}`)));
+    const values = decades.flatMap((k) => steps.map((digit) => Number(`${digit}e${k}`)));
     axis.title = { ...axis.title, text: title[1] };
     Object.assign(axis, { tickmode: "array", tickvals: values, ticktext: values.map((value) => quantity(value * factor, unit)), minor: { dtick: "D1", showgrid: false, ticks: "outside" } });
     return traces;

@@ -16,22 +16,22 @@ export const inWords = (words) => words.replace(KEY, (key) => (fieldNamed(key) ?
 
 // What a message recommends: pairs of words and a function that does it.
 export function remedies(words) {
-  const found = new Map();
+  const offers = new Map();
   for (const [, name, inner, raw, text] of words.matchAll(VALUE)) {
     const field = name ? fieldNamed(`${name}.${inner}`) : fields().find((one) => shown(one) && one.key.endsWith(`.${inner}`));
     const value = text === undefined ? Number(raw) : text;
-    if (field && asText(get(field.key)) !== String(value)) found.set(`Set ${labelOf(field)} to ${value}`, () => (field.choices.length ? choose(field.key, value) : set(field.key, value)));
+    if (field && asText(get(field.key)) !== String(value)) offers.set(`Set ${labelOf(field)} to ${value}`, () => (field.choices.length ? choose(field.key, value) : set(field.key, value)));
   }
-  if (/\brefine\b|finer grid|smaller spacing/.test(words) && ![...found.keys()].some((key) => key.includes("Refine")) && get("grid.refine") !== "auto") {
-    found.set("Refine where needed", () => set("grid.refine", "auto"));
+  if (/\brefine\b|finer grid|smaller spacing/.test(words) && ![...offers.keys()].some((key) => key.includes("Refine")) && get("grid.refine") !== "auto") {
+    offers.set("Refine where needed", () => set("grid.refine", "auto"));
   }
   const edge = EDGE.exec(words);
-  if (edge) found.set("Use a larger grid", () => enlarge(...[edge[1], edge[2] || edge[1]].map((text) => parsed(text, "m"))));
+  if (edge) offers.set("Use a larger grid", () => enlarge(...[edge[1], edge[2] || edge[1]].map((text) => parsed(text, "m"))));
   if (/work_of_adhesion/.test(words) && /"library"/.test(words)) {
-    found.set("Use the library's value", () => set("interface.work_of_adhesion", "library"));
-    found.set("No adhesion", () => set("interface.work_of_adhesion", "0 J/m^2"));
+    offers.set("Use the library's value", () => set("interface.work_of_adhesion", "library"));
+    offers.set("No adhesion", () => set("interface.work_of_adhesion", "0 J/m^2"));
   }
-  return [...found];
+  return [...offers];
 }
 
 function enlarge(...edges) {
