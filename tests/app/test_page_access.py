@@ -1,31 +1,16 @@
 """The page for readers with a keyboard or a screen reader, and six questions that it answers."""
 
-import os
 import re
-import shutil
-import subprocess
-from pathlib import Path
 
 import pytest
 
 from app_page import computed, expect, rest
-
-AXE = "axe-core@4.14.1"
+from axe import script
 
 
 @pytest.fixture(scope="session")
 def axe():
-    """The source of axe-core, which npm fetches once."""
-    cache = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
-    folder = cache / "restitution-tests" / AXE
-    source = folder / "node_modules" / "axe-core" / "axe.min.js"
-    if not source.is_file():
-        npm = shutil.which("npm") or pytest.skip("npm is not installed (Debian: apt install npm)")
-        command = [npm, "install", "--silent", "--no-save", "--prefix", str(folder), AXE]
-        folder.mkdir(parents=True, exist_ok=True)
-        if subprocess.run(command, capture_output=True, timeout=120).returncode:
-            pytest.skip(f"npm could not fetch {AXE}")
-    return source.read_text("utf-8")
+    return script()
 
 
 @pytest.mark.parametrize(("width", "scheme"), [(1440, "light"), (390, "dark")])
