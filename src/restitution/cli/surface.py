@@ -77,6 +77,9 @@ def surface(case: Path, out: Path, figures: FigureFormat) -> None:
     print_numbers(table)
     for parts in of_scans(provenance):
         print_numbers(_scans(parts.rows))
+    for key, told in provenance.items():
+        if key.endswith("information"):
+            say(f"The surface is {told}.")
     for line in _about_scans(provenance):
         say(line)
     for warning in warnings:
