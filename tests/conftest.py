@@ -24,7 +24,7 @@ SOURCES = Path(__file__).parents[1] / "src" / "restitution" / "numerics"
 # Fixtures that start another program: a browser, the server of the live page, a cluster or a DEM
 # code. Tests that run a case in a process of its own are marked one by one.
 PROGRAMS = {
-    *("browser", "opened", "app", "own_app", "cluster"),
+    *("browser", "opened", "printed", "app", "own_app", "cluster"),
     *("lammps", "lammps_environment", "liggghts", "yade", "kratos", "python_with"),
 }
 
@@ -272,10 +272,28 @@ def opened():
 
 
 def _opened(page, *, width=1000):
+    done = _browse(page, f"--window-size={width},900", "--dump-dom")
+    console = re.findall(r"CONSOLE[^\"]*\"(.*)\", source", done.stderr)
+    return done.stdout, console
+
+
+@pytest.fixture
+def printed():
+    """Print a page into a PDF file beside it, and count the pages of this file."""
+
+    def call(page):
+        pdf = page.with_suffix(".pdf")
+        _browse(page, f"--print-to-pdf={pdf}", "--no-pdf-header-footer")
+        return len(re.findall(rb"/Type\s*/Page\b", pdf.read_bytes()))
+
+    return call
+
+
+def _browse(page, *options):
     program = next(filter(None, map(shutil.which, BROWSERS)), None)
     if program is None:
         pytest.skip("no Chromium is installed (Debian: apt install chromium)")
-    done = subprocess.run(
+    return subprocess.run(
         [
             program,
             "--headless",
@@ -283,9 +301,8 @@ def _opened(page, *, width=1000):
             "--disable-gpu",
             "--enable-logging=stderr",
             "--virtual-time-budget=20000",
-            f"--window-size={width},900",
-            "--dump-dom",
             f"--user-data-dir={page.parent / 'browser'}",
+            *options,
             page.as_uri(),
         ],
         capture_output=True,
@@ -293,5 +310,3 @@ def _opened(page, *, width=1000):
         timeout=180,
         check=True,
     )
-    console = re.findall(r"CONSOLE[^\"]*\"(.*)\", source", done.stderr)
-    return done.stdout, console

@@ -280,8 +280,8 @@ def test_increments_of_plastic_work_add_their_error(monkeypatch):
     monkeypatch.setattr(ExpandingCavity, "work", lambda *_: (0.0, 1e-20))
     tried, make = [], cohesive_steps._try
 
-    def watched(state, at, residual):
-        tried.append((state, make(state, at, residual)))
+    def watched(state, *options):
+        tried.append((state, make(state, *options)))
         return tried[-1][1]
 
     monkeypatch.setattr(cohesive_steps, "_try", watched)

@@ -1,9 +1,16 @@
 """`restitution report`: a page of whatever a folder holds."""
 
+import json
 import re
+from urllib.parse import unquote
 
 import pytest
 
+import axe
+from restitution.laws.from_results import bare_law
+from restitution.pages.words import e_in_words
+
+LARGEST = 2**20  # bytes of a page
 HOSTILE = "</title><script>document.title = 'hacked'</script><b>$x$"
 
 
@@ -94,3 +101,105 @@ def test_what_is_no_folder_of_results(refused, reported, tmp_path):
     page = reported("run")
     (page.parent / "summary.json").write_text("{}")
     assert "summary.json: is damaged" in refused("report", page.parent)
+
+
+def answer(text):
+    return re.search(r'<p class="answer">(.*?)</p>', text)[1]
+
+
+def tables(text):
+    """The texts of the cells of all tables, row by row, by the heading or summary above each."""
+    return [
+        [re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row) for row in re.findall(r"<tr>.*?</tr>", one)]
+        for one in re.findall(r"<table>.*?</table>", text, re.DOTALL)
+    ]
+
+
+def at_velocities(text, *replacements):
+    """The case with impact velocities from 0.03 to 0.3 m/s."""
+    begin, end = text.index("[indentation]"), text.index("[unloading]")
+    text = text[:begin] + '[impact]\nfrom = "0.03 m/s"\nto = "0.3 m/s"\nsteps = 4\n' + text[end:]
+    for old, new in replacements:
+        assert old in text
+        text = text.replace(old, new)
+    return text
+
+
+def test_the_answer_comes_first_at_any_computed_velocity(reported, case_text, cli, refused):
+    page = reported("run", at_velocities(case_text))
+    text = own(page)
+    assert re.fullmatch(r"e = 0\.\d+ ± 0\.\d+ at 100 mm/s", answer(text))
+    assert "R = 500 µm" in text
+    rows = tables(text)[0]
+    assert [row[0] for row in rows[1:]] == ["50 mm/s", "100 mm/s", "200 mm/s"]
+    assert answer(text) == f"e = {rows[2][1]} at 100 mm/s"
+    assert text.index("answer") < text.index("Restitution against impact velocity")
+    assert cli("report", page.parent, "--velocity", "0.3 m/s")[0] == 0
+    last = bare_law(page.parent).points[-1]
+    assert answer(own(page)) == f"e = {e_in_words(last.restitution, last.error)} at 300 mm/s"
+    assert "outside the computed velocities" in refused(
+        "report", page.parent, "--velocity", "9 m/s"
+    )
+
+
+def test_numbers_have_prefixes_and_details_are_folded(reported, case_text):
+    text = own(reported("run", at_velocities(case_text)))
+    assert "yield pressure p_y</td><td>750 MPa" in text
+    assert not re.search(r">\w+_(m|Pa|N|J|kg)<", text)
+    before = text[: text.index("<h2>Details</h2>")]
+    for title in ("Derived quantities", "Conventions", "Origin of the surface", "Methods"):
+        assert f"<summary>{title}</summary>" in text
+        assert title not in before
+
+
+ADHESIVE = """
+title = "A small rough contact"
+total_error = false
+[first]
+radius = "5 um"
+youngs_modulus = "3 GPa"
+poissons_ratio = 0.35
+density = "1050 kg/m^3"
+[interface]
+yield_pressure = "elastic"
+work_of_adhesion = "0.05 J/m^2"
+adhesion = "jkr"
+[grid]
+nodes = 24
+spacing = "80 nm"
+[impact]
+velocity = "0.2 m/s"
+"""
+
+
+def test_an_adhesive_run_states_pull_off_and_sticking(reported):
+    text = own(reported("run", ADHESIVE))
+    before = text[: text.index("<figure>")]
+    assert re.search(r"<p>Sticks below [\d.]+ ± [\d.]+ mm/s; pull-off force \d", before)
+    assert "; smooth</p>" in before
+
+
+def test_a_report_is_small_prints_to_two_pages_and_has_no_serious_fault(
+    reported, case_text, printed, opened
+):
+    page = reported("run", at_velocities(case_text))
+    assert page.stat().st_size < LARGEST
+    assert printed(page) == 2
+    assert faults(page, opened) == []
+    text = page.read_text()
+    assert "(prefers-color-scheme: dark)" in text
+    page.write_text(text.replace("@media (prefers-color-scheme: dark)", "@media all"))
+    assert faults(page, opened) == []
+
+
+def faults(page, opened):
+    """The serious faults that axe-core finds on a page."""
+    checked = page.with_name("checked.html")
+    run = f"""<script>{axe.script()}</script><script>
+      const drawn = () => document.body.dataset.drawn ? {axe.RUN}.then((faults) => {{
+        document.body.dataset.faults = encodeURIComponent(JSON.stringify(faults));
+      }}) : setTimeout(drawn, 50);
+      drawn();</script>"""
+    checked.write_text(page.read_text().replace("</body>", run + "</body>"))
+    found = re.search(r'data-faults="([^"]*)"', opened(checked)[0])
+    return json.loads(unquote(found[1]))

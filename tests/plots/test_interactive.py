@@ -4,6 +4,7 @@ import numpy as np
 
 from restitution.plots.figure import Axis, Band, Chart, Figure, Line, Map, Mark, Points
 from restitution.plots.interactive import draw, shown_step
+from restitution.plots.library import compressed, script
 from tolerance import approx
 
 X = np.array([1.0, 2.0, 3.0])
@@ -58,3 +59,17 @@ def test_large_maps_are_thinned():
     assert shown_step(part) == 3
     plot = draw(part, Figure("", [part]))
     assert np.shape(plot.data[0].z) == (4, 234)
+
+
+def test_only_useful_buttons_stand_over_a_plot():
+    removed = set(plot_of(Line(X, X)).layout.modebar.remove)
+    assert {"lasso2d", "select2d", "zoomIn2d", "zoomOut2d", "autoScale2d"} == removed
+
+
+def test_the_library_draws_the_traces_of_all_figures_and_is_small():
+    assert script().startswith("/* plotly.js ")
+    assert "MIT license" in script()[:100]
+    assert len(compressed()) < 400_000
+    part = Map(np.arange(3.0), np.arange(3.0), np.eye(3), Axis("height", "nm"))
+    kinds = {draw(part, Figure("", [part])).data[0].type, plot_of(Line(X, X)).data[0].type}
+    assert kinds == {"heatmap", "scatter"}  # those in plotly/bundle.mjs

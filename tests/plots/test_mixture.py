@@ -34,3 +34,10 @@ def test_a_single_family_repeats_no_heading(sizes, law):
     assert chart.title == ""
     charts = mixture_figure("", [*sizes(3), law()]).panels
     assert [chart.title for chart in charts] == ["glass on wall", "glass on glass"]
+
+
+def test_charts_of_a_mixture_have_one_axis_of_restitution(sizes, law):
+    charts = mixture_figure("", [*sizes(3), law()]).panels
+    assert charts[0].y == charts[1].y
+    (alone,) = mixture_figure("", sizes(3), [*sizes(3), law()]).panels
+    assert alone.y == charts[0].y

@@ -10,7 +10,17 @@ from restitution import Grid
 from restitution.case.case_file import parse_case
 from restitution.plots import interactive
 from restitution.plots.cor import cor_axis
-from restitution.plots.figure import ORANGE, Line, Mark, Points, legend_entries
+from restitution.plots.figure import (
+    BLUE,
+    ORANGE,
+    SOLID,
+    Band,
+    Figure,
+    Line,
+    Mark,
+    Points,
+    legend_entries,
+)
 from restitution.plots.run import run_figures
 from restitution.plots.static import draw, write_figure
 from restitution.plots.surface import surface_map
@@ -205,3 +215,46 @@ def test_no_legend_lies_over_data(results):
         for legend in figure.legends:
             box = legend.get_window_extent()
             assert not any(box.overlaps(axes.get_window_extent()) for axes in figure.axes)
+
+
+def test_the_error_of_the_model_is_a_band_and_the_total_error_bars(results):
+    (chart,) = dict(run_figures(results))["restitution-velocity"].panels
+    (band,) = (part for part in chart.series if isinstance(part, Band))
+    cor, model = results["restitution"].values, results["model_error"].values
+    assert band.label == "± error of the model"
+    assert band.low == approx(np.clip(cor - model, 0, 1))
+    assert band.high == approx(np.clip(cor + model, 0, 1))
+    assert (band.color, band.dash) != (BLUE, SOLID)
+    assert any(entry.startswith("total error") for entry in legend_entries(chart))
+    results["model_error"][:] = 0
+    (chart,) = dict(run_figures(results))["restitution-velocity"].panels
+    assert not any(isinstance(part, Band) for part in chart.series)
+
+
+@pytest.mark.parametrize("name", ["restitution-velocity", "restitution-indentation"])
+def test_the_curve_rises_at_the_sticking_velocity_like_the_law(results, name):
+    V = results["impact_velocity"].values
+    sticks = 0.9 * V[2]
+    results["restitution"][:] = np.sqrt(np.clip(1 - (sticks / V) ** 2, 0, 1))
+    (chart,) = dict(run_figures(results))[name].panels
+    points = next(part for part in chart.series if isinstance(part, Points))
+    x, e = points.line()
+    assert points.y == approx(results["restitution"].values)
+    if name == "restitution-velocity":
+        above = x > 1.0001 * sticks
+        assert e[above] == approx(np.sqrt(1 - (sticks / x[above]) ** 2), rel=2e-2)
+        assert x[e > 0].min() < 1.001 * sticks
+        assert not e[x < 0.999 * sticks].any()
+    plot = interactive.draw(chart, Figure("", [chart]))
+    drawn = [trace for trace in plot.data if trace.name == "this contact" and len(trace.x) > 1]
+    line, markers = drawn
+    assert line.y == approx(e)
+    assert markers.y == approx(points.y)
+    lines = draw(Figure("", [chart])).axes[0].lines
+    assert any(np.size(one.get_xdata()) == x.size for one in lines)
+
+
+def test_a_curve_without_sticking_is_joined_point_by_point(results):
+    (chart,) = dict(run_figures(results))["restitution-velocity"].panels
+    points = next(part for part in chart.series if isinstance(part, Points))
+    assert points.via is None

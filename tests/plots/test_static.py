@@ -15,6 +15,7 @@ from restitution.plots.figure import (
     legend_entries,
 )
 from restitution.plots.static import draw, write_figure
+from tolerance import approx
 
 X = np.array([1.0, 2.0, 3.0])
 CHART = Chart(
@@ -94,3 +95,11 @@ def test_a_long_legend_stands_at_the_side():
     (legend,) = drawing.legends
     assert legend.get_window_extent().x0 > drawing.axes[0].get_window_extent().x1
     assert legend.get_window_extent().y0 >= 0
+
+
+def test_a_png_has_300_pixels_per_inch(tmp_path):
+    content = write_figure(tmp_path / "a", FIGURE, "png").read_bytes()
+    width = int.from_bytes(content[16:20], "big")
+    assert width == approx(300 * draw(FIGURE).get_figwidth(), abs=1)
+    at = content.index(b"pHYs") + 4  # pixels per metre
+    assert int.from_bytes(content[at : at + 4], "big") == approx(300 / 0.0254, abs=1)

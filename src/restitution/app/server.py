@@ -19,7 +19,6 @@ from pathlib import PurePath
 from typing import Any
 from urllib.parse import unquote
 
-from plotly.offline import get_plotlyjs
 from starlette.applications import Starlette
 from starlette.background import BackgroundTask
 from starlette.datastructures import MutableHeaders
@@ -34,6 +33,7 @@ from restitution.app.form import form
 from restitution.app.process import Process
 from restitution.app.session import LARGEST_SCAN, Session
 from restitution.errors import CaseError
+from restitution.plots.library import script
 
 _LARGEST_BODY = 2**22  # largest size of a JSON request (bytes)
 _HEADERS = {
@@ -129,7 +129,7 @@ class Server:
     async def _static(self, request: Request) -> Response:
         name = request.path_params["name"]
         if name == "plotly.js":
-            return Response(get_plotlyjs(), media_type="text/javascript")
+            return Response(script(), media_type="text/javascript")
         if name not in _static_files():
             raise HTTPException(404, "there is no such page")
         return Response(_file(name), media_type=_TYPES[PurePath(name).suffix])

@@ -10,6 +10,7 @@ from restitution.case.below_grid import notice_of
 from restitution.case.case import Case
 from restitution.case.case_file import naming, parse_case, parse_toml, read_text
 from restitution.case.derived import deepest_indentation, derived_quantities
+from restitution.case.labels import LABELS
 from restitution.case.omissions import default_yield
 from restitution.cli.console import command, errors, print_numbers, say, say_next, warn
 from restitution.contact.contact import Contact
@@ -22,33 +23,6 @@ from restitution.runs.two_scales import cost_in_words
 from restitution.surfaces import describe
 from restitution.surfaces.joined.advice import next_measurement
 from restitution.sweeps.sweep import parse_study
-
-# For each derived quantity: label, conversion factor from SI, displayed unit.
-_LABELS = {
-    "reduced_radius_m": ("reduced radius R*", 1e6, "um"),
-    "contact_modulus_Pa": ("contact modulus E*", 1e-9, "GPa"),
-    "reduced_mass_kg": ("reduced mass m*", 1, "kg"),
-    "yield_strength_Pa": ("yield strength Y", 1e-6, "MPa"),
-    "yield_pressure_Pa": ("yield pressure p_y", 1e-6, "MPa"),
-    "yield_indentation_m": ("yield indentation δ_y, smooth", 1e9, "nm"),
-    "yield_force_N": ("yield force F_y, smooth", 1, "N"),
-    "yield_velocity_m_per_s": ("yield velocity V_y, smooth", 1, "m/s"),
-    "work_of_adhesion_J_per_m2": ("work of adhesion w", 1, "J/m^2"),
-    "pull_off_force_smooth_N": ("pull-off force F_c, smooth", 1, "N"),
-    "pull_off_radius_m": ("pull-off radius a_c, smooth", 1e6, "um"),
-    "nodes_over_pull_off_radius": ("nodes over the pull-off radius, a_c/h", 1, ""),
-    "expected_pull_off_error": ("expected error of pull-off on this grid", 100, "%"),
-    "tabor_parameter": ("Tabor parameter (large in the JKR limit)", 1, ""),
-    "sticking_velocity_m_per_s": ("sticking velocity V_s, smooth elastic", 1, "m/s"),
-    "deepest_indentation_m": ("deepest indentation", 1e9, "nm"),
-    "predicted_contact_radius_m": ("contact radius there, smooth", 1e6, "um"),
-    "domain_half_width_m": ("half width of the grid", 1e6, "um"),
-    "nodes_over_contact_radius": ("nodes over the contact radius", 1, ""),
-    "rms_slope": ("rms slope h'", 1, ""),
-    "reduced_pressure_Pa": ("unit of pressure E* h'", 1e-6, "MPa"),
-    "mean_gap_at_first_touch_m": ("mean gap at first touch", 1e9, "nm"),
-    "nominal_area_m2": ("nominal area, one period", 1e12, "um^2"),
-}
 
 
 def check(case: Path) -> None:
@@ -119,7 +93,7 @@ def _table(case: Case, contact: Contact, *, auto: bool) -> Table:
     if case.realisations > 1:
         table.add_row("realisations", str(case.realisations), "surfaces; the first is described")
     quantities = derived_quantities(case, contact)
-    for key, (label, scale, unit) in _LABELS.items():
+    for key, (label, scale, unit) in LABELS.items():
         if key not in quantities or (key == "yield_strength_Pa" and quantities[key] is None):
             continue
         value = quantities[key]

@@ -6,13 +6,14 @@ from rich.markup import escape
 from rich.table import Column, Table
 
 from restitution.cli.console import answers, say, say_written
+from restitution.laws.law import velocity_of
 from restitution.pages.report import write_report
 from restitution.results.compare import compare as compared
 from restitution.results.writer import require_new_file, write_table
 
 
-def report(results: Path) -> None:
-    say_written(write_report(results))
+def report(results: Path, velocity: str | None) -> None:
+    say_written(write_report(results, None if velocity is None else velocity_of(velocity)))
 
 
 def compare(a: Path, b: Path, out: Path | None) -> None:

@@ -238,6 +238,10 @@ def report(
         Path,
         given("RESULTS", "Results folder of a run, periodic contact, study, mixture or surface."),
     ],
+    velocity: Annotated[
+        str | None,
+        option("VELOCITY", 'Impact velocity of the first COR that the page states: "0.5 m/s".'),
+    ] = None,
 ) -> None:
     """Write a self-contained HTML page of the results into the folder RESULTS."""
 

@@ -32,7 +32,7 @@ Secant = Callable[[Array, Array, Array, Array], Array]
 
 MOST_STEPS = 300  # Newton steps after which the solve counts as not converged
 _MOST_ITERATIONS = 500  # limit on the conjugate-gradient iterations of one Newton step
-_FORCING = 0.1  # largest relative residual of the linear system of a Newton step
+_FORCING = 0.2  # largest relative residual of the linear system of a Newton step
 
 # Let q be the actual decrease of the energy in a step, divided by the predicted decrease. The step
 # is accepted if q > _TAKEN. The trust region shrinks if q < _POOR. It grows if q > _GOOD and the

@@ -1,4 +1,4 @@
-"""A self-contained HTML page: accessible figures, their numbers, and tables.
+"""A self-contained HTML page: the answer, accessible figures, their numbers, and tables.
 
 The page contains the plotting library and makes no requests; its security policy forbids requests.
 The template escapes texts from users.
@@ -6,21 +6,31 @@ The template escapes texts from users.
 
 from __future__ import annotations
 
+import base64
+import gzip
+import json
 import math
-from collections.abc import Sequence
+import re
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
-from markupsafe import Markup
-from plotly.offline import get_plotlyjs
 
-from restitution.plots import interactive
+from restitution.plots import interactive, library
 from restitution.plots.figure import Figure, Map, legend_entries
 from restitution.results.writer import replace_file
 
-Cell = str | float | int | None
+
+@dataclass(frozen=True)
+class ChosenCell:
+    """A cell whose text depends on the option that the reader selects (`Choice`)."""
+
+    number: int
+
+
+Cell = str | float | int | ChosenCell | None
 
 
 @dataclass(frozen=True)
@@ -53,39 +63,104 @@ class Drawing:
 
 
 @dataclass(frozen=True)
+class Choice:
+    """Tables with cells that change with an option, which the reader selects by its `label`.
+
+    All tables but the first are folded.
+    `texts[option][number]` is the text of the cells `ChosenCell(number)`; `chosen` is the option
+    shown at first.
+    """
+
+    label: str
+    options: Sequence[str]
+    texts: Sequence[Sequence[str]]
+    tables: Sequence[PageTable]
+    chosen: int = 0
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a reader wants to know first: one line, further `facts`, and a table."""
+
+    line: str = ""
+    facts: Sequence[str] = ()
+    table: PageTable | None = None
+    choice: Choice | None = None
+
+
+@dataclass(frozen=True)
 class Page:
-    """The content of a page: title, introductory lines, warnings and parts."""
+    """A page: title, introductory lines, `answer`, two figures (`top`), warnings, parts.
+
+    `details` are folded until a reader opens them, and left out in print.
+    """
 
     title: str
     intro: Sequence[str] = ()
     warnings: Sequence[str] = ()
     parts: Sequence[PageTable | Drawing | Listing] = ()
+    answer: Answer = Answer()
+    top: Sequence[Drawing] = ()
+    details: Sequence[PageTable | Listing] = ()
 
 
 def write_page(path: Path, page: Page) -> Path:
     """Write `page` atomically as one HTML file, and return the file. Raises `OutputError`."""
     environment = Environment(
-        loader=PackageLoader("restitution.pages"), autoescape=True, undefined=StrictUndefined
+        loader=PackageLoader("restitution.pages"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
     )
-    environment.filters |= {"cell": _cell, "plots": _plots}
-    template = environment.get_template("page.html")
-    text = template.render(page=page, plotly=Markup(get_plotlyjs()))
+    drawings = [*page.top, *(part for part in page.parts if isinstance(part, Drawing))]
+    specs: list[str] = []
+    plots = {id(drawing): list(_plots(drawing.figure, specs)) for drawing in drawings}
+    environment.filters |= {"cell": _cell, "numeric": _numeric}
+    texts = page.answer.choice.texts if page.answer.choice else []
+    text = environment.get_template("page.html").render(
+        page=page,
+        plots=lambda drawing: plots[id(drawing)],
+        library=base64.b64encode(library.compressed()).decode(),
+        figures=_packed(f"[{','.join(specs)}]"),
+        texts=_packed(json.dumps(texts)),
+    )
     replace_file(path, lambda to: to.write_text(text, encoding="utf-8"))
     return path
 
 
-def _plots(figure: Figure) -> list[dict[str, Any]]:
-    """Prepare each panel for the template: Plotly JSON, title, shape, number of legend entries."""
-    return [
-        {
-            # Escape "<", so that no text in the JSON can end the script element that contains it.
-            "script": Markup(interactive.draw(panel, figure).to_json().replace("<", "\\u003c")),
+def _packed(text: str) -> str:
+    return base64.b64encode(gzip.compress(text.encode(), 9)).decode()
+
+
+def _plots(figure: Figure, specs: list[str]) -> Iterator[dict[str, Any]]:
+    """Append the JSON of each panel to `specs`, and yield what the template needs of it."""
+    for panel in figure.panels:
+        specs.append(interactive.draw(panel, figure).to_json())
+        yield {
+            "number": len(specs) - 1,
             "title": panel.title,
             "square": isinstance(panel, Map),
             "entries": len(legend_entries(panel)),
         }
-        for panel in figure.panels
+
+
+_NUMBER = re.compile(
+    r"[–-]|unknown|[-+]?\d[\d.,e+-]*( ± (<?[\d.e-]+|unknown))?( ?[^\s\d]{1,8})?|\d+ of \d+"
+)
+
+
+def _numeric(table: PageTable) -> list[bool]:
+    """Whether each column has numbers alone, which are aligned to the right.
+
+    In a table of names and values, the values stand beside their names.
+    """
+    columns = list(zip(*table.rows, strict=True)) or [("",)] * len(table.columns)
+    numeric = [
+        all(not isinstance(cell, str) or _NUMBER.fullmatch(cell) for cell in column)
+        for column in columns
     ]
+    return [False, False] if numeric == [False, True] else numeric
 
 
 def _cell(value: Cell) -> str:

@@ -11,8 +11,9 @@ import xarray as xr
 
 from restitution.display import counted, quantity
 from restitution.pages.methods import methods
-from restitution.pages.page import Cell, Drawing, Listing, Page, PageTable, write_page
+from restitution.pages.page import Answer, Cell, Drawing, Listing, Page, PageTable, write_page
 from restitution.pages.run import groups, maps_drawing, pressure_percentiles
+from restitution.pages.words import share, si, table_of
 from restitution.plots.periodic import (
     area_against_pressure,
     has_distribution,
@@ -32,30 +33,54 @@ def write_periodic_page(out: Path) -> Path:
     """Write `report.html` from the `results.nc` and `summary.json` in `out`."""
     stored = PeriodicResults(out)
     results, summary = stored.dataset, stored.summary
-    parts: list[PageTable | Drawing | Listing] = [_states(results)]
+    drawings: list[Drawing] = []
     if (results["nominal_pressure"].values > 0).any():
-        parts.append(_area(results))
+        drawings.append(_area(results))
         if has_stiffness(results):
-            parts.append(_stiffness(results))
+            drawings.append(_stiffness(results))
     if has_distribution(results):
-        parts.append(_distribution(results))
+        drawings.append(_distribution(results))
     if results["pressure"].values.any():
-        parts.append(_map(results))
+        drawings.append(_map(results))
         if has_maps(out):
-            parts.append(maps_drawing(stored.maps, results))
-    parts += [
-        _diagnostics(results, summary),
-        *groups(summary),
-        Listing("Case file", results.attrs["case"]),
-        methods(summary),
-    ]
+            drawings.append(maps_drawing(stored.maps, results))
     page = Page(
         title=summary["title"] or "Periodic contact",
         intro=[_in_words(summary)],
         warnings=summary["warnings"],
-        parts=parts,
+        answer=Answer(_line(results), [_bodies(summary)], _states(results)),
+        top=drawings[:1],  # two panels
+        parts=drawings[1:],
+        details=[
+            *groups(summary),
+            _diagnostics(results, summary),
+            Listing("Case file", results.attrs["case"]),
+            methods(summary),
+        ],
     )
     return write_page(out / "report.html", page)
+
+
+def _line(results: xr.Dataset) -> str:
+    """Contact area and gap in the middle of the computed pressures."""
+    p, gap, area = _columns(results, "nominal_pressure", "mean_gap", "corrected_relative_area")
+    pressed = np.flatnonzero(p > 0)
+    if not pressed.size:
+        return ""
+    k = int(pressed[pressed.size // 2])
+    return (
+        f"{share(float(area[k]))} in contact at {si(float(p[k]), 'Pa')}, mean gap "
+        f"{si(float(gap[k]), 'm')}"
+    )
+
+
+def _bodies(summary: Mapping[str, Any]) -> str:
+    statistics, derived = summary["surface_statistics"], summary["derived"]
+    return (
+        f"E* {si(derived['contact_modulus_Pa'], 'Pa')}, yield pressure "
+        f"{si(derived['yield_pressure_Pa'], 'Pa')}; Sq {si(statistics['Sq_m'], 'm')}, rms slope "
+        f"{statistics['Sdq']:.3g}"
+    )
 
 
 def _in_words(summary: Mapping[str, Any]) -> str:
@@ -78,8 +103,8 @@ def _states(results: xr.Dataset) -> PageTable:
         [
             quantity(p, "Pa"),
             quantity(gap, "m"),
-            f"{100 * area:.4g}",
-            "–" if theory is None else f"{100 * float(theory.relative_area(p)):.4g}",
+            share(area),
+            "–" if theory is None else share(float(theory.relative_area(p))),
             quantity(most, "Pa"),
             _stiffness_cell(k),
             "yes" if resolved else "no",
@@ -92,8 +117,8 @@ def _states(results: xr.Dataset) -> PageTable:
     columns = [
         "nominal pressure",
         "mean gap",
-        "contact area (%)",
-        "Persson (%)",
+        "contact area",
+        "Persson",
         "largest pressure",
         "stiffness (MPa/nm)",
         "resolved",
@@ -187,12 +212,11 @@ def _map(results: xr.Dataset) -> Drawing:
 
 def _diagnostics(results: xr.Dataset, summary: Mapping[str, Any]) -> PageTable:
     resolved = results["resolved"].values.astype(bool)
-    return PageTable(
+    return table_of(
         "Diagnostics",
-        ["quantity", "value"],
-        [
-            ["largest residual", summary["diagnostics"]["largest_residual"]],
-            ["depths resolved", f"{np.count_nonzero(resolved)} of {resolved.size}"],
-            ["convolutions", summary["convolutions"]],
-        ],
+        {
+            "largest_residual": summary["diagnostics"]["largest_residual"],
+            "depths_resolved": f"{np.count_nonzero(resolved)} of {resolved.size}",
+            "convolutions": summary["convolutions"],
+        },
     )

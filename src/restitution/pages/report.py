@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
-from restitution.errors import OutputError, RestitutionError, one_line
+from restitution.errors import CaseError, OutputError, RestitutionError, one_line
 from restitution.pages.many import write_mixture_page, write_study_page
 from restitution.pages.periodic import write_periodic_page
 from restitution.pages.run import write_run_page
@@ -12,20 +13,27 @@ from restitution.pages.surface import write_surface_page
 from restitution.results.schema import PERIODIC_FILE
 
 # For each kind of results, a file that identifies it and the function that writes its page.
-_PAGES = {
+_PAGES: dict[str, Callable[..., Path]] = {
     "mixture.toml": write_mixture_page,
     "study.toml": write_study_page,
     PERIODIC_FILE: write_periodic_page,  # before results.nc, which such a folder also holds
     "results.nc": write_run_page,
     "surface.nc": write_surface_page,
 }
+_AT_VELOCITY = ("mixture.toml", "results.nc")  # pages that show COR at one velocity
 
 
-def write_report(out: Path) -> Path:
+def write_report(out: Path, velocity: float | None = None) -> Path:
+    """Write the page of `out`, with COR at `velocity` (m/s). Raises `RestitutionError`."""
     for name, write in _PAGES.items():
         if (out / name).is_file():
+            if velocity is not None and name not in _AT_VELOCITY:
+                raise CaseError(
+                    f"--velocity: only runs and mixtures have COR at one velocity, and {out} is "
+                    "neither; leave it out"
+                )
             try:
-                return write(out)
+                return write(out) if velocity is None else write(out, velocity)
             except RestitutionError:
                 raise
             except (OSError, LookupError, ValueError, TypeError, AttributeError) as error:

@@ -16,10 +16,12 @@ from restitution.contact.checks.resolution import NODES_PER_PATCH
 from restitution.curve.oblique import ObliquePoint
 from restitution.display import quantity
 from restitution.losses.losses import NAMES
+from restitution.pages.answer import answer_of
 from restitution.pages.methods import methods
 from restitution.pages.page import Cell, Drawing, Listing, Page, PageTable, write_page
 from restitution.pages.run_in import run_in_parts
 from restitution.pages.scans import of_scans
+from restitution.pages.words import column_unit, table_of
 from restitution.plots.cor import Abscissa
 from restitution.plots.oblique import has_oblique, oblique_figure
 from restitution.plots.run import (
@@ -37,36 +39,43 @@ from restitution.results.reader import EnsembleResults, RunResults, read_run
 from restitution.results.tables import has_maps
 
 
-def write_run_page(out: Path) -> Path:
+def write_run_page(out: Path, velocity: float | None = None) -> Path:
     """Write `report.html` from the `results.nc` and `summary.json` in `out`."""
     run = read_run(out)
     results, summary = run.dataset, run.summary
+    top: list[Drawing] = []
     parts: list[PageTable | Drawing | Listing] = []
+    details: list[PageTable | Listing] = []
     if results.sizes["indentation_max"]:
-        parts += [_restitution(results, abscissa) for abscissa in abscissae(results)]
+        top = [_restitution(results, abscissa) for abscissa in reversed(abscissae(results))]
+        parts.append(_force(results))
         if run.oblique and has_oblique(results):
             parts.append(_oblique_drawing(results, run.oblique))
         if run.run_in:
-            parts += run_in_parts(run.run_in, run.impacts, summary["run_in"])
-        parts.append(_force(results))
+            worn, impacts, surfaces = run_in_parts(run.run_in, run.impacts, summary["run_in"])
+            top, parts = [worn, top[0]], [impacts, *top[1:], *parts]
+            details = [surfaces]
         if has_patches(results):
             parts.append(_patches(results))
         if has_map(results):
             parts.append(_pressure(results))
         if has_maps(out):
             parts.append(maps_drawing(run.maps, results))
-    parts += [
-        *of_scans(summary.get("surface", {})),
-        _diagnostics(results, summary),
-        *groups(summary),
-        Listing("Case file", results.attrs["case"]),
-        methods(summary),
-    ]
     page = Page(
         title=summary["title"] or "Restitution",
         intro=list(filter(None, (_in_words(run), default_yield(_yield_source(summary))))),
         warnings=summary["warnings"],
+        answer=answer_of(run, velocity),
+        top=top,
         parts=parts,
+        details=[
+            *details,
+            *of_scans(summary.get("surface", {})),
+            *groups(summary),
+            _diagnostics(results, summary),
+            Listing("Case file", results.attrs["case"]),
+            methods(summary),
+        ],
     )
     return write_page(out / "report.html", page)
 
@@ -94,6 +103,14 @@ def _span(values: NDArray[np.float64], digits: str) -> str:
     return f" from {known.min():{digits}} to {known.max():{digits}}" if known.size else ""
 
 
+_ERRORS = {
+    "restitution_error": "± solver",
+    "total_error": "± total",
+    "model_error": "± model",
+    "restitution_with_losses": "COR with losses",
+} | {f"{name}_factor": f"factor of {name}" for name in NAMES}
+
+
 def _restitution(results: xr.Dataset, abscissa: Abscissa) -> Drawing:
     words, unit = abscissa.axis.label, abscissa.axis.unit
     x = abscissa.scale * results[abscissa.variable].values
@@ -110,33 +127,42 @@ def _restitution(results: xr.Dataset, abscissa: Abscissa) -> Drawing:
         f"Coefficient of restitution{_span(cor, '.3f')} against {words}{_span(x, '.3g')} {unit}",
         f"Open markers ({few} of {cor.size}): not resolved by the grid, because at least half of "
         f"the contact is in patches of fewer than {NODES_PER_PATCH} nodes, or the cells are too "
-        "large for adhesion.",
+        "large for adhesion."
+        if few
+        else "The grid resolves the contact at every point.",
         PageTable(
             "Restitution",
-            [abscissa.axis.title, "COR", "resolved", *errors],
+            [abscissa.axis.title, "COR", "resolved", *(_ERRORS[name] for name in errors)],
             [
-                [float(a), float(b), "yes" if good else "no", *map(float, of_cor)]
+                [float(a), _rounded(b), "yes" if good else "no", *map(_rounded, of_cor)]
                 for a, b, good, *of_cor in columns
             ],
         ),
     )
 
 
+def _rounded(value: float) -> str:
+    return "–" if math.isnan(value) else f"{value:.4f}"
+
+
 def _force(results: xr.Dataset) -> Drawing:
     depth, load = 1e6 * results["indentation"].values, results["force"].values
+    scale, unit = column_unit(load, "N")
     rows: list[list[Cell]] = [
-        ["loading", float(d), float(f)] for d, f in zip(depth, load, strict=True)
+        ["loading", float(d), scale * float(f)] for d, f in zip(depth, load, strict=True)
     ]
     unloading = list(unloading_lines(results))
     for line in unloading:
-        rows += [[line.name, float(d), float(f)] for d, f in zip(line.x, line.y, strict=True)]
+        rows += [
+            [line.name, float(d), scale * float(f)] for d, f in zip(line.x, line.y, strict=True)
+        ]
     return Drawing(
         "Load and displacement",
         load_displacement(results),
         f"Normal force against indentation, up to {quantity(load.max(), 'N')} at "
         f"{quantity(1e-6 * depth.max(), 'm')}",
         f"The loading curve{', and unloading curves from some of the depths' * bool(unloading)}.",
-        PageTable("Curves", ["curve", "indentation (µm)", "force (N)"], rows),
+        PageTable("Curves", ["curve", "indentation (µm)", f"force ({unit})"], rows),
     )
 
 
@@ -160,11 +186,11 @@ def _patches(results: xr.Dataset) -> Drawing:
 def _pressure(results: xr.Dataset) -> Drawing:
     lowered = "plastic_displacement" in results and bool(results["plastic_displacement"].any())
     yields = " Plastic displacement: the depth by which yielding has lowered the surface."
-    most = 1e-6 * float(results["pressure"].max())
+    most = quantity(float(results["pressure"].max()), "Pa")
     return Drawing(
         "Contact pressure",
         pressure_map(results),
-        f"Map of the contact pressure at the largest indentation, up to {most:.4g} MPa",
+        f"Map of the contact pressure at the largest indentation, up to {most}",
         f"At the largest indentation; areas without contact are blank.{yields * lowered}",
         pressure_percentiles(results),
     )
@@ -209,17 +235,12 @@ def pressure_percentiles(results: xr.Dataset) -> PageTable:
 
 
 def _diagnostics(results: xr.Dataset, summary: Mapping[str, Any]) -> PageTable:
-    rows: list[list[Cell]] = [
-        [key.replace("_", " "), value]
-        for key, value in summary["diagnostics"].items()
-        if not isinstance(value, list)
-    ]
     resolved = results["resolved"].values.astype(bool)
-    rows.append(["depths resolved", f"{np.count_nonzero(resolved)} of {resolved.size}"])
+    values = {k: v for k, v in summary["diagnostics"].items() if not isinstance(v, list)}
+    values["depths_resolved"] = f"{np.count_nonzero(resolved)} of {resolved.size}"
     if summary.get("observed_order") is not None:
-        rows.append(["observed order of convergence", summary["observed_order"]])
-    rows.append(["convolutions", summary["convolutions"]])
-    return PageTable("Diagnostics", ["quantity", "value"], rows)
+        values["observed_order_of_convergence"] = summary["observed_order"]
+    return table_of("Diagnostics", values | {"convolutions": summary["convolutions"]})
 
 
 def groups(summary: Mapping[str, Any]) -> Iterator[PageTable]:
@@ -231,14 +252,7 @@ def groups(summary: Mapping[str, Any]) -> Iterator[PageTable]:
         ("conventions", "Conventions"),
     ):
         if group := summary.get(key):
-            rows = [[name, _cell(value)] for name, value in group.items()]
-            yield PageTable(title, ["quantity", "value"], rows)
-
-
-def _cell(value: Any) -> Cell:
-    if isinstance(value, bool) or not isinstance(value, (int, float, type(None))):
-        return str(value)
-    return value
+            yield table_of(title, group)
 
 
 _NOTE = (

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from restitution.display import quantity
@@ -15,7 +15,7 @@ _COLUMNS = {
     "coverage": "coverage",
     "impacts": "impacts",
     "COR": "restitution",
-    "total_error": "total_error",
+    "± total": "total_error",
     "standard deviation": "restitution_std",
     "5 % quantile": "restitution_5",
     "median": "restitution_50",
@@ -27,18 +27,18 @@ def run_in_parts(
     points: Sequence[RunInPoint],
     impacts: Sequence[Sequence[RepeatedImpact]],
     summary: Mapping[str, Any],
-) -> Iterator[Drawing | PageTable]:
+) -> tuple[Drawing, Drawing, PageTable]:
     """The figures and tables of a run-in, whose entry of `summary.json` is `summary`."""
     rows = [[getattr(point, name) for name in _COLUMNS.values()] for point in points]
     last = max(point.coverage for point in points)
-    yield Drawing(
+    after = Drawing(
         "Restitution after many impacts",
         run_in_figure(points),
         f"Mean coefficient of restitution against impact velocity up to coverage {last:.3g}",
         f"Means over {points[0].places:.0f} places; the bands hold 90 % of the places.",
         PageTable("Restitution at each coverage", list(_COLUMNS), rows),
     )
-    yield Drawing(
+    during = Drawing(
         "Restitution during the impacts",
         impacts_figure(impacts),
         "Coefficient of restitution of each impact against coverage",
@@ -63,12 +63,13 @@ def run_in_parts(
         for one in summary["sequences"]
         for name, of in one["surfaces"].items()
     ]
-    yield PageTable(
+    table = PageTable(
         "Surfaces after the impacts",
         ["sequence", "body", "file", "Sq", "Sz", "Ssk", "Sku", "Sdq"],
         surfaces,
         ['Each file is a scan for another case: kind = "measured", file = "…".'],
     )
+    return after, during, table
 
 
 def _trend(state: Mapping[str, Any]) -> str:

@@ -6,12 +6,13 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from restitution.display import quantity
 from restitution.pages.page import Cell, Drawing, PageTable
 from restitution.plots.joined import joined_figure
 from restitution.surfaces import Surface
 
 _KEYS = ("name", "kind", "edge_m", "pixel_m", "shortest_m", "longest_m", "ends_at", "rms_m")
-_COLUMNS = ["scan", "kind", "edge (m)", "pixel (m)", "shortest wave (m)", "longest wave (m)"]
+_COLUMNS = ["scan", "kind", "edge", "pixel", "shortest wave", "longest wave"]
 
 
 def of_scans(provenance: Mapping[str, Any]) -> Iterator[PageTable]:
@@ -21,7 +22,7 @@ def of_scans(provenance: Mapping[str, Any]) -> Iterator[PageTable]:
         rows: list[list[Cell]] = []
         while f"{before}scan_{len(rows) + 1}_name" in provenance:
             one = f"{before}scan_{len(rows) + 1}_"
-            rows.append([provenance[f"{one}{key}"] for key in (*_KEYS, "slope")])
+            rows.append([_cell(key, provenance[f"{one}{key}"]) for key in (*_KEYS, "slope")])
         overlaps = [
             str(value)
             for key, value in provenance.items()
@@ -29,10 +30,15 @@ def of_scans(provenance: Mapping[str, Any]) -> Iterator[PageTable]:
         ]
         yield PageTable(
             "Scans",
-            [*_COLUMNS, "shorter waves end at", "Rq of these waves (m)", "rms slope of these"],
+            [*_COLUMNS, "shorter waves end at", "Rq of these waves", "rms slope of these"],
             rows,
             ["Waves that each scan shows, in the joined power spectrum.", *overlaps],
         )
+
+
+def _cell(key: str, value: Cell) -> Cell:
+    length = key.endswith("_m") and isinstance(value, float)
+    return quantity(float(value), "m") if length else value
 
 
 def joined_drawing(told: Mapping[str, Any], surface: Surface) -> Drawing:

@@ -14,6 +14,7 @@ from restitution.display import quantity
 from restitution.numerics.grid import Grid
 from restitution.pages.page import Cell, Drawing, Page, PageTable, write_page
 from restitution.pages.scans import joined_drawing, of_scans
+from restitution.pages.words import table_of
 from restitution.plots.figure import Map
 from restitution.plots.interactive import shown_step
 from restitution.plots.surface import (
@@ -75,7 +76,6 @@ def write_surface_page(out: Path) -> Path:
     nodes = dataset.sizes["x"], dataset.sizes["y"]
     hx, hy = (float(provenance[f"spacing_{axis}_m"]) for axis in ("x", "y"))
     surface = Surface(dataset["height"].values, Grid(nodes, (hx, hy)), provenance)
-    origin: list[list[Cell]] = [[k, value] for k, value in provenance.items() if k != "notice"]
     size = " × ".join(quantity(edge, "m") for edge in surface.grid.size)
     page = Page(
         title=dataset.attrs.get("title") or "Surface",
@@ -92,8 +92,10 @@ def write_surface_page(out: Path) -> Path:
             _autocorrelation(surface),
             _spectrum(surface),
             *map(joined_drawing, statistics.get("joined_spectra", []), repeat(surface)),
+        ],
+        details=[
             *of_scans(provenance),
-            PageTable("Origin", ["step or source", "value"], origin),
+            table_of("Origin", {k: value for k, value in provenance.items() if k != "notice"}),
             _methods(surface),
         ],
     )

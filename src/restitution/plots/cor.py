@@ -46,7 +46,7 @@ def cor_axis(series: Sequence[Series]) -> Axis:
     return Axis(
         "coefficient of restitution",
         low=-_MARGIN if values.min() <= 0 else float(low),
-        high=float(high) if high < 1 else 1.05,
+        high=float(high) if high < 1 else 1 + _MARGIN,
     )
 
 
@@ -59,6 +59,26 @@ def bars(cor: Array, error: Array) -> tuple[Array, str]:
     lengths = np.clip([np.minimum(error, cor), np.minimum(error, 1 - cor)], 0, None)
     cut = bool((error > lengths + 1e-12).any())
     return lengths, "total error (cut at 0 and 1)" if cut else "total error"
+
+
+_ONSET = 40  # number of points of a curve above the sticking velocity
+
+
+def onset(V: Array, e: Array) -> tuple[Array, Array]:
+    """Velocities and COR of a curve between the last point that sticks and the first rebound.
+
+    The energy loss L is that of the first rebound, e² = 1 − 2 L/(m* V²) (Thornton & Ning 1998), so
+    that COR rises at the sticking velocity like a step. Empty if COR is nowhere 0 before a rebound.
+    """
+    steps = np.flatnonzero((e[:-1] <= 0) & (e[1:] > 0))
+    if not steps.size:
+        return np.empty(0), np.empty(0)
+    last, first = V[steps[-1]], V[steps[-1] + 1]
+    sticks = first * np.sqrt(1 - e[steps[-1] + 1] ** 2)
+    begins = max(float(last), float(sticks))
+    x = begins + (first - begins) * np.linspace(0, 1, _ONSET, endpoint=False) ** 2
+    y = np.sqrt(np.maximum(1 - (sticks / x) ** 2, 0.0))
+    return np.insert(x, 0, begins), np.insert(y, 0, 0.0)
 
 
 def _values(part: Series) -> Iterable[Array]:

@@ -23,9 +23,9 @@ DASHED: Dash = (4, 2)
 DOTTED: Dash = (1, 2)
 DASH_DOTTED: Dash = (6, 2, 1, 2)
 
-# Colours of Okabe and Ito (2008) without yellow and black. Colour-blind readers can distinguish
-# them, on light and on dark backgrounds.
-PALETTE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
+# Colours after Okabe and Ito (2008), whose contrast with a white and with a dark page is at least
+# 3:1, as WCAG 2.2, 1.4.11, requires.
+PALETTE = ("#2080c8", "#d55e00", "#009e73", "#c8609a", "#b37d00", "#8a70d6")
 # Symbols distinguish series that share a colour. In print without colours, they distinguish all.
 SYMBOLS: tuple[Symbol, ...] = ("circle", "square", "diamond", "triangle-up", "triangle-down")
 BLUE, ORANGE = PALETTE[:2]
@@ -75,7 +75,8 @@ class Points:
 
     `error` has shape (n,) for symmetric bars, or (2, n) for the lengths below and above. Markers
     are open where `open` is true. In the legend, `open_label` stands beside an open marker, and
-    `error_label` beside an error bar.
+    `error_label` beside an error bar. The connecting line also passes through the points `via`
+    (x and y), in the order of x.
     """
 
     x: Array
@@ -89,17 +90,27 @@ class Points:
     error_label: str = ""
     open: NDArray[np.bool_] | None = None
     open_label: str = ""
+    via: tuple[Array, Array] | None = None
+
+    def line(self) -> tuple[Array, Array]:
+        """x and y of the connecting line."""
+        if self.via is None:
+            return np.asarray(self.x), np.asarray(self.y)
+        x, y = (np.append(own, more) for own, more in zip((self.x, self.y), self.via, strict=True))
+        order = np.argsort(x, kind="stable")
+        return x[order], y[order]
 
 
 @dataclass(frozen=True, eq=False)
 class Band:
-    """The area between `low` and `high`."""
+    """The area between `low` and `high`, with edges in the style of `dash`."""
 
     x: Array
     low: Array
     high: Array
     label: str = ""
     color: str = BLUE
+    dash: Dash = SOLID
 
 
 @dataclass(frozen=True)

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from plotly.graph_objects import Figure as Plot
 
 from restitution.plots.figure import (
+    BLUE,
+    GREY,
+    Array,
     Axis,
     Band,
     Chart,
+    Dash,
     Figure,
     Line,
     Map,
@@ -21,8 +25,12 @@ from restitution.plots.figure import (
     has_open,
     legend_entries,
 )
+from restitution.plots.ticks import LINEAR, Labels, digits_within, label, labels_of, power
 
 _MOST_PIXELS = 320  # largest number of pixels of a map along each axis; a larger map is thinned
+# Kept are: zoom, pan, the whole figure again, and an image file.
+_BUTTONS = {"remove": ["lasso2d", "select2d", "zoomIn2d", "zoomOut2d", "autoScale2d"]}
+_TICKS = 7  # largest number of labels of an axis
 _LAYERS = (Band, Line, Points)  # drawing order of the series, from bottom to top
 
 
@@ -38,10 +46,11 @@ def draw(panel: Chart | Map, figure: Figure) -> Plot:
             "y": -0.28,
             "yanchor": "top",
             "title": {"text": _escaped(figure.legend_title), "side": "top"},
+            "tracegroupgap": 0,
         },
         "font": {"family": "system-ui, sans-serif", "size": 13},
         "hovermode": "closest",
-        "modebar": {"bgcolor": "rgba(0,0,0,0)", "color": "#8c959f", "activecolor": "#57606a"},
+        "modebar": _BUTTONS | {"bgcolor": "rgba(0,0,0,0)", "color": GREY, "activecolor": BLUE},
     }
     if isinstance(panel, Map):
         return Plot([_heatmap(panel)], layout | _map_axes(panel))
@@ -59,17 +68,32 @@ def shown_step(panel: Map) -> int:
 
 
 def _chart_axes(chart: Chart) -> dict[str, Any]:
-    axes = {"xaxis": _axis(chart.x), "yaxis": _axis(chart.y)}
+    axes = {
+        "xaxis": _axis(chart.x, _numbers(chart, "x")),
+        "yaxis": _axis(chart.y, _numbers(chart, "y")),
+    }
     if chart.right is None:
         return axes
     right = {
-        **_axis(chart.right),
+        **_axis(chart.right, _numbers(chart, "y", right=True)),
         "overlaying": "y",
         "side": "right",
         "showgrid": False,
         "tickmode": "auto",  # ticks independent of those of the left axis
     }
     return axes | {"yaxis2": right, "margin": {"l": 70, "r": 70, "t": 28, "b": 60}}
+
+
+def _numbers(chart: Chart, name: Literal["x", "y"], *, right: bool = False) -> Array:
+    """All numbers of the series along one axis."""
+    parts = []
+    for part in chart.series:
+        if isinstance(part, Band):
+            parts += [part.x] if name == "x" else [part.low, part.high]
+        elif isinstance(part, Line | Points):
+            on_right = isinstance(part, Line) and part.right
+            parts += [getattr(part, name)] if name == "x" or on_right == right else []
+    return np.concatenate([np.ravel(part) for part in parts]) if parts else np.empty(0)
 
 
 def _all_traces(chart: Chart) -> list[dict[str, Any]]:
@@ -91,7 +115,8 @@ def _all_traces(chart: Chart) -> list[dict[str, Any]]:
 def _traces(part: Band | Line | Points, chart: Chart) -> list[dict[str, Any]]:
     """Make the traces of one series. The key `entry` of a trace holds its legend text."""
     if isinstance(part, Band):
-        edge = {"x": part.x, "mode": "lines", "line": {"width": 0}, "hoverinfo": "skip"}
+        line = {"width": 1, "color": part.color, "dash": _dashes(part.dash, 1.0)}
+        edge = {"x": part.x, "mode": "lines", "line": line, "hoverinfo": "skip"}
         return [
             {**edge, "y": part.low, "entry": ""},
             {
@@ -114,7 +139,11 @@ def _traces(part: Band | Line | Points, chart: Chart) -> list[dict[str, Any]]:
         f"%{{y:.4g}} {_escaped((y or chart.y).unit)}<extra>{name}</extra>",
     }
     if isinstance(part, Line):
-        line = {"color": part.color, "width": part.width + 0.3, "dash": _dashes(part)}
+        line = {
+            "color": part.color,
+            "width": part.width + 0.3,
+            "dash": _dashes(part.dash, part.width + 0.3),
+        }
         trace |= {"mode": "lines" if np.size(part.x) > 1 else "markers", "line": line}
         trace |= {"line_shape": "hvh"} if part.step else {}
         return [trace | ({"yaxis": "y2"} if part.right else {})]
@@ -127,6 +156,12 @@ def _traces(part: Band | Line | Points, chart: Chart) -> list[dict[str, Any]]:
         | {"symbol": [f"{part.symbol}-open" if h else part.symbol for h in hollow]},
     }
     traces = [trace]
+    if part.joined and part.via is not None:
+        # Its own trace, so that the markers keep their numbers.
+        along, up = part.line()
+        line = {"x": along, "y": up, "mode": "lines", "line": trace["line"], "hoverinfo": "skip"}
+        traces.insert(0, line | {"name": name, "entry": ""})
+        trace["line"] = {"color": part.color, "width": 0}
     if part.error is not None and has_error(part):
         below, above = np.broadcast_to(part.error, (2, np.size(part.y)))
         trace["error_y"] = {
@@ -190,21 +225,21 @@ def _heatmap(part: Map) -> dict[str, Any]:
 
 
 def _map_axes(part: Map) -> dict[str, Any]:
-    x = _axis(Axis("x", "µm")) | {"constrain": "domain"}
-    y = _axis(Axis("y", "µm")) | {"scaleanchor": "x", "constrain": "domain"}
+    x = _axis(Axis("x", "µm"), part.x) | {"constrain": "domain"}
+    y = _axis(Axis("y", "µm"), part.y) | {"scaleanchor": "x", "constrain": "domain"}
     if part.downwards:
         y["autorange"] = "reversed"
     return {"xaxis": x, "yaxis": y}
 
 
-def _axis(axis: Axis) -> dict[str, Any]:
+def _axis(axis: Axis, numbers: Array) -> dict[str, Any]:
     settings: dict[str, Any] = {
         "title": {"text": _escaped(axis.title)},
         "type": axis.scale,
         "showline": True,
         "ticks": "outside",
         "automargin": True,
-        "exponentformat": "power",
+        "nticks": _TICKS,
     }
     ends = [
         math.log10(end) if end is not None and axis.scale == "log" else end
@@ -214,16 +249,45 @@ def _axis(axis: Axis) -> dict[str, Any]:
         settings["range"] = ends
     elif ends != [None, None]:  # Plotly loses a range with one fixed end when the page is resized
         settings["autorangeoptions"] = dict(zip(("minallowed", "maxallowed"), ends, strict=True))
+    known = numbers[np.isfinite(numbers) & ((numbers > 0) | (axis.scale != "log"))]
+    low, high = (float(known.min()), float(known.max())) if known.size else (1.0, 1.0)
+    low, high = (low if axis.low is None else axis.low), (high if axis.high is None else axis.high)
+    return settings | _tick_labels(axis, low, high)
+
+
+def _tick_labels(axis: Axis, low: float, high: float) -> dict[str, Any]:
+    labels = labels_of(axis, low, high)
+    settings: dict[str, Any] = {"exponentformat": "none"}
+    if labels == "prefixes":
+        settings = {"exponentformat": "SI", "minexponent": 0, "ticksuffix": _escaped(axis.unit)}
+    elif labels == "powers":
+        settings = {"exponentformat": "power"}
+    span = math.log10(high / low) if axis.scale == "log" else 0.0
+    if span >= LINEAR:
+        # Explicit, because Plotly draws the labels between powers of ten in another size.
+        step = math.ceil(span / _TICKS)
+        decades = range(math.floor(math.log10(low)) - 1, math.ceil(math.log10(high)) + 2, step)
+        digits = digits_within(span)
+        values = [float(f"{digit}e{k}") for k in decades for digit in digits]
+        settings |= {"tickvals": values, "ticktext": [_tick(v, labels, axis.unit) for v in values]}
     return settings
 
 
-def _dashes(line: Line) -> str:
-    return ",".join(f"{length * (line.width + 0.3):.3g}px" for length in line.dash) or "solid"
+def _tick(value: float, labels: Labels, unit: str) -> str:
+    if labels != "powers":
+        return _escaped(label(value, labels, unit))
+    exponent, digits = power(value)
+    times = "" if digits == "1" else f"{digits}×"
+    return f"{times}10<sup>{exponent}</sup>".replace("-", "−")
+
+
+def _dashes(dash: Dash, width: float) -> str:
+    return ",".join(f"{length * width:.3g}px" for length in dash) or "solid"
 
 
 def _faint(color: str) -> str:
     red, green, blue = (int(color[k : k + 2], 16) for k in (1, 3, 5))
-    return f"rgba({red},{green},{blue},0.25)"
+    return f"rgba({red},{green},{blue},0.2)"
 
 
 def _escaped(text: str) -> str:

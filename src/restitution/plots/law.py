@@ -12,7 +12,7 @@ from restitution.curve.columns import array
 from restitution.curve.point import Point
 from restitution.display import quantity
 from restitution.laws.law import Law
-from restitution.plots.cor import IMPACT_VELOCITY, Abscissa, bars, cor_chart
+from restitution.plots.cor import IMPACT_VELOCITY, Abscissa, bars, cor_axis, cor_chart, onset
 from restitution.plots.figure import (
     BLUE,
     DASHED,
@@ -23,6 +23,7 @@ from restitution.plots.figure import (
     SYMBOLS,
     Array,
     Band,
+    Chart,
     Dash,
     Figure,
     Line,
@@ -38,16 +39,16 @@ if TYPE_CHECKING:  # only `restitution fit` needs the solver
 # Colour, dashes and width of the line of each law. Lines that often coincide at COR = 1 differ in
 # width.
 LAW_LINES: dict[str, tuple[str, Dash, float]] = {
-    "hertz": ("#bfbfbf", SOLID, 5.0),
-    "sticking": ("#e69f00", SOLID, 3.2),
+    "hertz": ("#8f8f8f", SOLID, 5.0),
+    "sticking": ("#b37d00", SOLID, 3.2),
     "thornton-ning": ("#000000", SOLID, 1.4),
     "thornton-ning-force": ("#009e73", (8, 2), 1.4),
-    "johnson": ("#cc79a7", (10, 1.5), 1.6),
+    "johnson": ("#c8609a", (10, 1.5), 1.6),
     "mdr": ("#000080", (5, 1, 1, 1), 1.4),
     "lammps-mdr": ("#000080", (5, 1, 1, 1), 1.4),
-    "constant": ("#e3d5ae", SOLID, 3.2),
+    "constant": ("#a58a40", SOLID, 3.2),
     "walton-braun": ("#8c564b", DASHED, 1.2),
-    "luding": ("#56b4e9", (3, 1, 1, 1, 1, 1), 1.6),
+    "luding": ("#2a9db0", (3, 1, 1, 1, 1, 1), 1.6),
     "eepa": ("#808000", (2, 3), 1.4),
     "brilliantov": ("#d55e00", (7, 1, 2, 1), 1.2),
 }
@@ -121,15 +122,17 @@ def theory_figure(
 _MOST_ENTRIES = 2 * len(PALETTE)  # each colour with two kinds of lines
 
 
-def mixture_figure(title: str, laws: Sequence[Law]) -> Figure:
+def mixture_figure(title: str, laws: Sequence[Law], beside: Sequence[Law] | None = None) -> Figure:
     """Plot COR: a chart for every pair of materials, with a line for every pair of sizes.
 
-    In a chart of more than `_MOST_ENTRIES` lines, grey lines share one entry of the legend.
+    In a chart of more than `_MOST_ENTRIES` lines, grey lines share one entry of the legend. All
+    charts have the axis of COR that spans the lines `beside`, by default their own.
     """
     families = families_of(laws)
     names = [f"{first} on {second}" if len(families) > 1 else "" for first, second in families]
+    axis = cor_axis(_lines(laws if beside is None else beside))
     charts = [
-        cor_chart(IMPACT_VELOCITY.axis, _lines(members), name)
+        Chart(IMPACT_VELOCITY.axis, axis, _lines(members), name)
         for name, members in zip(names, families.values(), strict=True)
     ]
     return Figure(title, charts)
@@ -148,6 +151,7 @@ def _line(law: Law, place: int | None) -> Line:
     """A line with the `place`th style and its own entry in the legend; grey if `place` is None."""
     name = f"R* = {quantity(law.radius, 'm')}"
     V, e = law.column("velocity"), law.column("restitution")
+    V, e = Points(V, e, via=onset(V, e)).line()
     if place is None:
         return Line(V, e, "R* between these", name=name, color=GREY)
     dashes, color = divmod(place, len(PALETTE))

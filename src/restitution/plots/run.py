@@ -16,7 +16,7 @@ from restitution.compare.references import (
 )
 from restitution.contact.checks.resolution import NODES_PER_PATCH
 from restitution.display import quantity
-from restitution.plots.cor import IMPACT_VELOCITY, INDENTATION, Abscissa, bars, cor_chart
+from restitution.plots.cor import IMPACT_VELOCITY, INDENTATION, Abscissa, bars, cor_chart, onset
 from restitution.plots.figure import (
     DASH_DOTTED,
     DASHED,
@@ -38,6 +38,7 @@ from restitution.plots.figure import (
 )
 from restitution.plots.oblique import has_oblique, oblique_figure
 
+MODEL_BAND = "± error of the model"
 UNRESOLVED = f"open: not resolved (patches of under {NODES_PER_PATCH} nodes)"
 
 _MARGIN = 1.2  # factor by which a logarithmic axis extends beyond the first and the last point
@@ -178,6 +179,10 @@ def restitution_figure(results: xr.Dataset, abscissa: Abscissa) -> Figure:
         Line(x, coarser.values, f"refine = {int(coarser['refine'])}", color=ORANGE, dash=dash)
         for coarser, dash in zip(results.get("coarser_restitution", ()), _DASHES, strict=False)
     ]
+    model = results["model_error"].values
+    if np.nanmax(model, initial=0.0) > 0:
+        low, high = np.clip(cor - model, 0.0, 1.0), np.clip(cor + model, 0.0, 1.0)
+        series.append(Band(x, low, high, MODEL_BAND, GREY, DOTTED))
     error, error_label = bars(cor, results["total_error"].values)
     series.append(
         Points(
@@ -189,6 +194,7 @@ def restitution_figure(results: xr.Dataset, abscissa: Abscissa) -> Figure:
             error_label=error_label,
             open=~results["resolved"].values.astype(bool),
             open_label=UNRESOLVED,
+            via=_onset(results, abscissa),
         )
     )
     with_losses = results["restitution_with_losses"].values
@@ -201,6 +207,19 @@ def restitution_figure(results: xr.Dataset, abscissa: Abscissa) -> Figure:
     inside = x[x > 0]
     axis = replace(abscissa.axis, low=inside.min() / _MARGIN, high=inside.max() * _MARGIN)
     return Figure(results.attrs.get("title", ""), [cor_chart(axis, series)])
+
+
+def _onset(results: xr.Dataset, abscissa: Abscissa) -> tuple[Array, Array] | None:
+    """Points of the curve at the sticking velocity (`onset`), on the axis `abscissa`."""
+    V, e = results["impact_velocity"].values, results["restitution"].values
+    known = np.isfinite(e) & (V > 0)
+    V, e = V[known], e[known]
+    between, onset_of = onset(V, e)
+    if not between.size:
+        return None
+    values = results[abscissa.variable].values[known]
+    x = np.exp(np.interp(np.log(between), np.log(V), np.log(values)))
+    return abscissa.scale * x, onset_of
 
 
 def _references(references: list[Reference], scale: float) -> list[Series]:

@@ -32,6 +32,8 @@ from restitution.plots.figure import (
     has_open,
     legend_entries,
 )
+from restitution.plots.figure import Axis as Described
+from restitution.plots.ticks import LINEAR, Labels, digits_within, label, labels_of, power
 from restitution.results.writer import replace_file
 
 Format = Literal["png", "svg", "pdf"]
@@ -42,12 +44,8 @@ _CHART, _MAP, _SECOND = (6.4, 4.0), (5.6, 4.6), 4.6
 _ROW, _SIDE = 0.2, 2.4
 # Largest number of entries of a legend below the axes; a longer legend is placed at the side.
 _MOST_BELOW = 8
-# Pairs (decades, digits). If a logarithmic axis spans at most `decades` decades, it has labels at
-# `digits` times powers of ten.
-_DIGITS: tuple[tuple[float, tuple[int, ...]], ...] = ((1.0, (1, 2, 3, 5, 7)), (3.0, (1, 2, 5)))
+_DPI = 300  # of PNG files, for print
 _TICKS = 6  # largest number of intervals between the labels of a linear axis
-_LINEAR = 0.5  # a logarithmic axis that spans fewer decades than this has linear ticks
-_PLAIN = (0.9e-3, 1e4)  # an axis inside this range has labels without powers of ten
 _MARKERS = {
     "circle": "o",
     "square": "s",
@@ -83,7 +81,7 @@ def write_figure(path: Path, figure: Figure, file_format: Format = "png") -> Pat
         replace_file(
             to_write,
             lambda to: drawing.savefig(
-                to, format=file_format, dpi=150, metadata=_DATELESS[file_format]
+                to, format=file_format, dpi=_DPI, metadata=_DATELESS[file_format]
             ),
         )
     return to_write
@@ -136,35 +134,42 @@ def _draw_chart(axes: Axes, chart: Chart, handles: dict[str, Any]) -> None:
     axes.set(ylabel=_escaped(y.title), yscale=y.scale, ylim=(y.low, y.high))
     for axis, described in ((axes.xaxis, x), (axes.yaxis, y)):
         if described.scale == "log":
-            _set_log_ticks(axis)
+            _set_log_ticks(axis, described)
         else:
-            formatter = ScalarFormatter(useMathText=True)
-            formatter.set_powerlimits((-3, 4))
-            axis.set_major_locator(MaxNLocator(_TICKS, steps=(1, 2, 5, 10)))
-            axis.set_major_formatter(formatter)
+            _set_linear_ticks(axis, described)
     if chart.right is not None:
         y = chart.right
         right.set(ylabel=_escaped(y.title), yscale=y.scale, ylim=(y.low, y.high))
 
 
-def _set_log_ticks(axis: Axis) -> None:
+def _set_linear_ticks(axis: Axis, described: Described) -> None:
+    axis.set_major_locator(MaxNLocator(_TICKS, steps=(1, 2, 5, 10)))
+    if labels_of(described, *axis.get_view_interval()) == "prefixes":
+        unit = described.unit
+        axis.set_major_formatter(FuncFormatter(lambda value, _: label(value, "prefixes", unit)))
+        return
+    formatter = ScalarFormatter(useMathText=True)
+    formatter.set_powerlimits((-3, 4))
+    axis.set_major_formatter(formatter)
+
+
+def _set_log_ticks(axis: Axis, described: Described) -> None:
     """Label the powers of ten and, if the axis spans few decades, some values between them."""
     low, high = axis.get_view_interval()
     decades = math.log10(high / low) if low > 0 else math.inf
     axis.set_minor_formatter(NullFormatter())
-    if decades < _LINEAR:
+    if decades < LINEAR:
         axis.set_major_locator(MaxNLocator(_TICKS, steps=(1, 2, 5, 10)))
-    elif digits := next((digits for most, digits in _DIGITS if decades <= most), None):
+    elif len(digits := digits_within(decades)) > 1:
         axis.set_major_locator(LogLocator(subs=digits, numticks=100))
-    plain = _PLAIN[0] <= low and high <= _PLAIN[1]
-    axis.set_major_formatter(FuncFormatter(lambda value, _: _number(value, plain=plain)))
+    labels, unit = labels_of(described, low, high), described.unit
+    axis.set_major_formatter(FuncFormatter(lambda value, _: _number(value, labels, unit)))
 
 
-def _number(value: float, *, plain: bool) -> str:
-    if plain or value <= 0:
-        return f"{value:g}"
-    exponent = math.floor(math.log10(value) + 1e-9)
-    digits = f"{value / 10**exponent:.3g}"
+def _number(value: float, labels: Labels, unit: str) -> str:
+    if labels != "powers" or value <= 0:
+        return label(value, labels, unit)
+    exponent, digits = power(value)
     return rf"$10^{{{exponent}}}$" if digits == "1" else rf"${digits}\times10^{{{exponent}}}$"
 
 
@@ -172,7 +177,15 @@ def _draw_series(axes: Axes, part: Series, handles: dict[str, Any]) -> None:
     if isinstance(part, Mark):
         _draw_mark(axes, part)
     elif isinstance(part, Band):
-        band = axes.fill_between(part.x, part.low, part.high, color=part.color, alpha=0.25, lw=0)
+        band = axes.fill_between(
+            part.x,
+            part.low,
+            part.high,
+            facecolor=(part.color, 0.2),
+            edgecolor=part.color,
+            lw=0.8,
+            ls=(0, part.dash) if part.dash else "-",
+        )
         handles.setdefault(part.label, band)
     elif isinstance(part, Line):
         (line,) = axes.plot(
@@ -197,7 +210,7 @@ def _draw_points(axes: Axes, points: Points, handles: dict[str, Any]) -> None:
         )
         handles.setdefault(points.error_label, bars)
     if points.joined:
-        axes.plot(x, y, "-", color=color, lw=1)
+        axes.plot(*points.line(), "-", color=color, lw=1)
     hollow = np.zeros(x.shape, bool) if points.open is None else points.open
     marker = _MARKERS[points.symbol]
     style: dict[str, Any] = {"ls": "none", "marker": marker, "ms": 4.5, "color": color, "zorder": 3}

@@ -17,6 +17,7 @@ from restitution.contact.cohesive.equilibrium import (
     with_interaction,
     with_losses_of,
 )
+from restitution.contact.cohesive.guide import Guide
 from restitution.contact.cohesive.steps import ACCURACY, follow, reference_energy
 from restitution.contact.models import Separation
 from restitution.contact.state import State
@@ -37,9 +38,9 @@ def separate_cohesive(
 ) -> Iterator[State]:
     """Yield `state` and the states of unloading until the rest of the separation is reversible.
 
-    `known` are states of another unloading of the same contact, from a smaller indentation. If
-    neither has yielded and both come to the same equilibrium, the states below it are taken from
-    `known`.
+    `known` are states of another unloading of the same contact, from a smaller indentation, which
+    guide this one. If neither has yielded and both come to the same equilibrium, the states below
+    it are taken from `known`.
     """
     yield from _with_largest_tension(_separating(state, accuracy, known))
 
@@ -58,15 +59,16 @@ def _separating(
             tension = max(tension, -state.force)
             yield state
     shared = _shared(loaded, state.indentation, known)
+    guide = Guide.of(known, loaded)
     for meeting in shared[:: max(1, len(shared) // _MEETINGS)]:
-        for new in follow(state, meeting.indentation, **options):
+        for new in follow(state, meeting.indentation, guide=guide, **options):
             tension = max(tension, -new.force)
             state = new
             yield new
         if _is_same(state, meeting):
             yield from _continued(state, shared[shared.index(meeting) :])
             return
-    for new in follow(state, -math.inf, **options):
+    for new in follow(state, -math.inf, guide=guide, **options):
         tension = max(tension, -new.force)
         yield new
         if new.contact_nodes == 0 and -new.force <= _FARTHEST * tension and is_unique(new):

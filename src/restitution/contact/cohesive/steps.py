@@ -22,6 +22,7 @@ from restitution.contact.cohesive.equilibrium import (
     solve_cohesive,
     with_interaction,
 )
+from restitution.contact.cohesive.guide import Guide
 from restitution.contact.state import Array
 from restitution.errors import NotConvergedError
 from restitution.numerics.box import reframe, shape_of, union
@@ -81,12 +82,14 @@ def follow(
     residual: float,
     accuracy: float = ACCURACY,
     scale: float = 0.0,
+    guide: Guide | None = None,
 ) -> Iterator[CohesiveState]:
     """Yield the equilibria from `state` (not included) to the indentation `target`.
 
     The error of a step is `accuracy` times the energy `scale` (J), at least that of the step
     itself and, in loading, a lower bound of that at `target`. If `target` is infinite, the caller
-    must stop the iteration. Raises `NotConvergedError` if an equilibrium cannot be followed.
+    must stop the iteration. The solves start from the changes along `guide`. Raises
+    `NotConvergedError` if an equilibrium cannot be followed.
     """
     law, pair = law_of(state.contact), state.contact.pair
     z0 = law.equilibrium_separation
@@ -111,6 +114,8 @@ def follow(
             length = min(length, _to_tension(state, length))
         last = length >= left * (1 - 1e-9)
         at = target if last else state.indentation + sign * min(length, 0.5 * left)
+        if guide is not None and not last:
+            at = guide.stop(state.indentation, at)
         length = abs(at - state.indentation)
         state_on = _on_fitting_box(state, at, target, residual)
         if state_on is not state:
@@ -119,7 +124,7 @@ def follow(
         try:
             fine = last or state.force <= 0  # the forces of bodies far apart are small
             loose = _BETWEEN if sign > 0 else _BACK
-            step = _try(state, at, residual if fine else max(residual, loose))
+            step = _try(state, at, residual if fine else max(residual, loose), guide)
         except NotConvergedError:
             if length <= 8 * _LEAST_STEP * z0:
                 raise
@@ -206,13 +211,16 @@ def _earlier(state: CohesiveState, at: float) -> CohesiveState | None:
     return before
 
 
-def _try(state: CohesiveState, at: float, residual: float) -> _Step:
+def _try(state: CohesiveState, at: float, residual: float, guide: Guide | None) -> _Step:
     contact, box = state.contact, state.box
     limit, convolutions = contact.plasticity.bound_after(state, at, residual)
     previous = _earlier(state, at)
     p = state.box_pressure
     u: Array | None = state.box_displacement
-    if previous is not None:
+    change = None if guide is None else guide.change(state.indentation, at, box)
+    if change is not None:
+        p, u = p + change, None
+    elif previous is not None:
         ratio = (at - state.indentation) / (state.indentation - previous.indentation)
         if previous.box == box:
             p = p + ratio * (p - previous.box_pressure)
