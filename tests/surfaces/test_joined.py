@@ -111,7 +111,7 @@ def test_smoothing_of_the_finest_scan_is_undecidable(joined):
 def test_a_fine_scan_below_a_coarse_one_is_undecidable():
     optical, afm, _ = three()
     blurred = spectrum(KNOWN.scan(*FINE, 3, smoothing=0.15e-6), "fine")
-    noted = join([optical, afm, blurred]).notes
+    noted = join([optical, afm, blurred]).doubts
     assert any("smooth the latter cannot be decided" in note for note in noted)
 
 
@@ -165,7 +165,7 @@ def test_scans_without_overlap_are_refused_or_bridged():
 def test_a_scan_without_waves_is_not_used():
     optical, afm, fine = three()
     joined = join([optical, afm, fine.cut(2e-6, "tip radius")])
-    assert any(note.startswith("fine is not used: its tip radius") for note in joined.notes)
+    assert any(note.startswith("fine is not used: its tip radius") for note in joined.doubts)
     with pytest.raises(SurfaceError, match="leaves no waves"):
         join([fine.cut(2e-6, "tip radius")])
 
@@ -216,9 +216,9 @@ def test_a_twin_has_the_heights_of_the_scan_that_carries_them():
 
 
 def test_unmeasured_waves_are_named_with_their_slope(joined):
-    notice = twin_of_scans(joined, Grid((64, 64), (1e-6, 1e-6)), seed=1).provenance["notice"]
-    assert "waves below 26.04 nm were not measured" in notice
-    assert "have an rms slope of" in notice
+    told = twin_of_scans(joined, Grid((64, 64), (1e-6, 1e-6)), seed=1).provenance["information"]
+    assert "waves below 26.04 nm were not measured" in told
+    assert "have an rms slope of" in told
 
 
 def test_cells_above_all_waves_are_refused(joined):

@@ -48,12 +48,14 @@ def check(case: Path) -> None:
             warnings.append(notice)
     if law := law_of_patches(contact):
         say(cost_in_words(law))
-    for part in read.roughness:
+    for number, part in enumerate(read.roughness, 1):
         if part.kind == "joined":
+            before = f"part_{number}_" if len(read.roughness) > 1 else ""
             joined, told = part.spectrum(case.parent), contact.surface.provenance
             carried = 2 * max(contact.grid.spacing)
             shortest = joined.shortest if "split_m" in told else carried
             further = next_measurement(joined, shortest, 2 * max(contact.grid.size))
+            say(f"The surface is {told[before + 'information']}.")
             say(f"Next measurement: {further}.")
     for warning in warnings:
         warn(warning)

@@ -77,6 +77,9 @@ def surface(case: Path, out: Path, figures: FigureFormat) -> None:
     print_numbers(table)
     for parts in of_scans(provenance):
         print_numbers(_scans(parts.rows))
+    for key, told in provenance.items():
+        if key.endswith("information"):
+            say(f"The surface is {told}.")
     for line in _about_scans(provenance):
         say(line)
     for warning in warnings:
@@ -89,8 +92,7 @@ def surface(case: Path, out: Path, figures: FigureFormat) -> None:
 def _scans(rows: Sequence[Sequence[Cell]]) -> Table:
     table = Table("scan", "waves", "", "ends at", Column("Rq", justify="right"), box=None)
     for name, _, _, _, shortest, longest, ends, rms, _ in rows:
-        low, high, height = (quantity(float(value or 0), "m") for value in (shortest, longest, rms))
-        table.add_row(str(name), low, f"to {high}", str(ends), height)
+        table.add_row(*map(str, (name, shortest, f"to {longest}", ends, rms)))
     return table
 
 

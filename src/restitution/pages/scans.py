@@ -37,8 +37,9 @@ def of_scans(provenance: Mapping[str, Any]) -> Iterator[PageTable]:
 
 
 def _cell(key: str, value: Cell) -> Cell:
-    length = key.endswith("_m") and isinstance(value, float)
-    return quantity(float(value), "m") if length else value
+    if key.endswith("_m") and isinstance(value, float):
+        return quantity(value, "m")
+    return value
 
 
 def joined_drawing(told: Mapping[str, Any], surface: Surface) -> Drawing:

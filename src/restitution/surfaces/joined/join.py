@@ -76,7 +76,8 @@ class JoinedSpectrum:
         scans: What each scan contributes.
         overlaps: Comparisons of scans.
         gaps: Shortest and longest wave (m) of each range that no scan shows.
-        notes: Sentences on cut-offs and on what cannot be decided.
+        notes: Clauses on cut-offs, and on what the finest scan cannot show.
+        doubts: Clauses on scans that are not used, and on differences that cannot be explained.
         spectra: The spectra of the scans.
     """
 
@@ -89,6 +90,7 @@ class JoinedSpectrum:
     overlaps: tuple[Overlap, ...] = ()
     gaps: tuple[tuple[float, float], ...] = ()
     notes: tuple[str, ...] = ()
+    doubts: tuple[str, ...] = ()
     spectra: tuple[ScanSpectrum, ...] = ()
 
     def at(self, q: Array) -> Array:
@@ -146,7 +148,7 @@ class JoinedSpectrum:
             "scans": scans,
             "overlaps": [one._asdict() for one in self.overlaps],
             "gaps_m": [list(gap) for gap in self.gaps],
-            "notes": list(self.notes),
+            "notes": [*self.notes, *self.doubts],
         }
 
 
@@ -163,7 +165,8 @@ def join(scans: Sequence[ScanSpectrum], *, bridge: bool = False) -> JoinedSpectr
     Raises:
         SurfaceError: Scans contradict each other by more than a factor of 2, or leave a gap.
     """
-    notes = [
+    notes: list[str] = []
+    doubts = [
         f"{scan.name} is not used: its {scan.why} leaves no waves ({quantity(scan.shortest, 'm')} "
         "is above half of its edge)"
         for scan in scans
@@ -174,10 +177,10 @@ def join(scans: Sequence[ScanSpectrum], *, bridge: bool = False) -> JoinedSpectr
         key=lambda scan: -scan.edge,
     )
     if not spectra:
-        raise SurfaceError("; ".join(notes))
+        raise SurfaceError("; ".join(doubts))
     _check_gaps(spectra, bridge=bridge)
     curve = _fitted(spectra)
-    spectra = [_compared(scan, spectra, curve, notes) for scan in spectra]
+    spectra = [_compared(scan, spectra, curve, notes, doubts) for scan in spectra]
     gaps = _check_gaps(spectra, bridge=bridge)
     curve = _fitted(spectra)
     overlaps = tuple(_overlaps(spectra, curve))
@@ -196,6 +199,7 @@ def join(scans: Sequence[ScanSpectrum], *, bridge: bool = False) -> JoinedSpectr
         overlaps,
         gaps,
         tuple(notes),
+        tuple(doubts),
         tuple(spectra),
     )
     return replace(whole, scans=tuple(_contributions(whole, spectra)))
@@ -324,7 +328,11 @@ def _weights(x: Array, knots: Array) -> Array:
 
 
 def _compared(
-    scan: ScanSpectrum, spectra: Sequence[ScanSpectrum], curve: _Curve, notes: list[str]
+    scan: ScanSpectrum,
+    spectra: Sequence[ScanSpectrum],
+    curve: _Curve,
+    notes: list[str],
+    doubts: list[str],
 ) -> ScanSpectrum:
     """`scan` without the short waves in which a finer scan shows that it is wrong."""
     for finer in spectra:
@@ -346,13 +354,13 @@ def _compared(
             continue
         if begin == 0:
             if abs(mean[-1] - mean[0]) > limit.max():
-                notes.append(
+                doubts.append(
                     f"whether {scan.name} is smoothed or wrongly calibrated beside {finer.name} "
                     f"cannot be decided: they differ in all waves that both show"
                 )
             continue
         if mean[-1] > 0 and _end_slope(scan) < _NOISE:
-            notes.append(
+            doubts.append(
                 f"below {quantity(float(waves[begin]), 'm')}, {scan.name} has up to "
                 f"{math.exp(float(mean[-1])):.2g} times the density of {finer.name}: whether the "
                 "tip or optics smooth the latter cannot be decided; state its tip radius or "

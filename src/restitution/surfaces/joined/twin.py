@@ -118,8 +118,7 @@ def _of_heights(spectrum: JoinedSpectrum, whole: Grid) -> Surface | None:
     return replace(scan.surface, height=scan.surface.height - carried(scan.surface, (cell, cell)))
 
 
-def unmeasured(spectrum: JoinedSpectrum) -> Iterator[str]:
-    """Yield a sentence for each range of waves that no scan shows, with its rms slope."""
+def _unmeasured(spectrum: JoinedSpectrum) -> Iterator[str]:
     low = spectrum.shortest / _FINER
     yield (
         f"waves below {quantity(spectrum.shortest, 'm')} were not measured and are absent; "
@@ -127,6 +126,9 @@ def unmeasured(spectrum: JoinedSpectrum) -> Iterator[str]:
         f"{spectrum.slope(low, spectrum.shortest):.3g} beside "
         f"{spectrum.slope(spectrum.shortest, spectrum.longest):.3g} of the measured ones"
     )
+
+
+def _bridged(spectrum: JoinedSpectrum) -> Iterator[str]:
     for shortest, longest in spectrum.gaps:
         yield (
             f"waves from {quantity(shortest, 'm')} to {quantity(longest, 'm')} were not measured; "
@@ -149,29 +151,25 @@ def _provenance(
     files = ", ".join(scan.name for scan in spectrum.scans)
     of_heights = carrier(spectrum)
     told = [
-        f"the surface is a statistical twin (seed {seed}) of {len(spectrum.scans)} scans with "
-        f"waves from {quantity(spectrum.shortest, 'm')} to {quantity(spectrum.longest, 'm')}: Rq "
-        f"{1e9 * float(np.std(made.height)):.4g} nm, rms slope {rms_slope(made):.3g}",
+        f"a statistical twin (seed {seed}) of {len(spectrum.scans)} scans with waves from "
+        f"{quantity(spectrum.shortest, 'm')} to {quantity(spectrum.longest, 'm')}",
         *spectrum.notes,
-        *unmeasured(spectrum),
+        *_unmeasured(spectrum),
     ]
-    if cells > spectrum.shortest:
-        told.append(
-            f"waves shorter than {1e6 * cells:.4g} um, which this grid does not resolve, have "
-            f"{gone / slope:.0%} of the rms slope"
-        )
     if spectrum.longest > longest * (1 + 1e-9):
         lost = spectrum.slope(longest, spectrum.longest)
         told.append(
             f"waves longer than {quantity(longest, 'm')} are left out (rms slope {lost:.2g})"
         )
+    doubts = [*spectrum.doubts, *_bridged(spectrum)]
     if of_heights is None:
-        told.append("heights are normally distributed, because a line scan shows most of them")
+        doubts.append("heights are normally distributed, because a line scan shows most of them")
     return {
         "source": "twin",
         "kind": f"twin of {len(spectrum.scans)} scans",
         "file": files,
-        "notice": "; ".join(told),
+        "information": "; ".join(told),
+        **({"notice": f"{files}: {'; '.join(doubts)}"} if doubts else {}),
         "extension": "statistical twin",
         "seed": seed,
         "longest_wave_m": longest,

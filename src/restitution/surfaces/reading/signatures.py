@@ -73,8 +73,8 @@ def _archive(path: Path) -> str | None:
     files = {name.rpartition("/")[2] for name in names}
     if files & _CONTAINERS:
         return (
-            'is a contact.engineering container; join its scans (kind = "joined"), or unpack it '
-            "and give one of the scans in it (.nc)"
+            "is a contact.engineering container; unpack it, and give one of the scans in it "
+            '(.nc), or join all of them (kind = "joined")'
         )
     if "[Content_Types].xml" in files:
         return "is an Office document without a table of heights; save the heights as .csv"
