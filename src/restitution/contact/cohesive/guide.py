@@ -35,22 +35,22 @@ class Guide:
 
     def change(self, begin: float, end: float, box: Box) -> Array | None:
         """Change of pressure (Pa) on `box` between two indentations; None if the guide jumps."""
-        pairs = [self._around(at) for at in (begin, end)]
-        states = [state for pair in pairs for state in pair]
-        if not all(pairs) or len({state.jumps for state in states}) > 1:
+        before, after = self._around(begin), self._around(end)
+        if before is None or after is None:
             return None
-        before, after = (
-            _between(*pair, at, box) for pair, at in zip(pairs, (begin, end), strict=True)
-        )
-        return after - before if after.any() else None
+        if len({state.jumps for state in (*before, *after)}) > 1:
+            return None
+        changed = _between(*after, end, box)
+        return changed - _between(*before, begin, box) if changed.any() else None
 
-    def _around(self, at: float) -> tuple[CohesiveState, ...]:
+    def _around(self, at: float) -> tuple[CohesiveState, CohesiveState] | None:
+        """The states on either side of an indentation; None beyond the ends."""
         for a, b in zip(self.path[:-1], self.path[1:], strict=True):
             if b.indentation <= at <= a.indentation:
                 if at == a.indentation:
                     return a, a
                 return (b, b) if at == b.indentation else (a, b)
-        return ()
+        return None
 
 
 def _between(a: CohesiveState, b: CohesiveState, at: float, box: Box) -> Array:
