@@ -75,8 +75,7 @@ inline void contour_means(Rows<const double> values, bool periodic, Rows<double>
     }
     const auto mean = [&](const ContourPart& part, double level) {
         const double own = part.sum / (part.count * std::sqrt(part.count));
-        const double share = (part.end / level) * (part.end / level);
-        return part.into < 0 ? own : own + share * (part.below - own);
+        return part.into < 0 ? own : own + part.end / level * (part.below - own);
     };
     for (Index k = Index(parts.size()) - 1; k >= 0; --k)
         if (parts[k].into >= 0) parts[k].below = mean(parts[parts[k].into], parts[k].end);

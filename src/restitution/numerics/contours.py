@@ -16,8 +16,8 @@ Array = NDArray[Any]  # double precision
 def contour_means(values: Array, periodic: bool, out: Array) -> None:
     """Write the mean of Σ v/n^1.5 over the contours around each node into `out`; 0 where v ≤ 0.
 
-    Contours of v that enclose no other saddle belong to one part of the array; Σ v and n are the
-    sum and the number of nodes of its catchment. The mean is uniform in v², from 0 to the node.
+    Between two saddles, the contours around a node belong to one part of the array; Σ v and n are
+    the sum and the number of nodes of its catchment. The mean is over the levels from 0 to v.
     """
     rows, columns = values.shape
     flat = values.ravel()
@@ -60,8 +60,8 @@ def contour_means(values: Array, periodic: bool, out: Array) -> None:
     own, below = np.array(total) / np.array(count, dtype=float) ** 1.5, np.zeros(len(into))
 
     def mean(part: int, level: float) -> float:
-        share = (end[part] / level) ** 2
-        return float(own[part] + share * (below[part] - own[part]) if into[part] >= 0 else own[part])
+        below_it = below[part] if into[part] >= 0 else own[part]
+        return float(own[part] + end[part] / level * (below_it - own[part]))
 
     for part in reversed(range(len(into))):
         if into[part] >= 0:

@@ -237,6 +237,7 @@ def _check(state: State, back: Sequence[State], collision: Collision) -> dict[st
 
 def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> dict[str, Any]:
     points = out.curve.points
+    one_pressure = contact.first_yield_pressure == contact.hardness
     return {
         **run.head(case),
         "depths_asked": len(case.depths()),
@@ -251,11 +252,12 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> d
             "refine": case.grid.refine,
             "yield_pressure": case.yielding().source,
             "yields": contact.yields or "unknown",
+            **({"size_effect_m": size} if (size := case.yielding().size_effect) else {}),
         },
         "materials": _materials(case),
         "conventions": {
             **CONVENTIONS,
-            "yield_pressure": FULL_PRESSURE if contact.plasticity.grows else YIELD_PRESSURE,
+            "yield_pressure": YIELD_PRESSURE if one_pressure else FULL_PRESSURE,
         },
         "derived": derived_quantities(case, contact),
         "sticking": summary_of(run.sticking),

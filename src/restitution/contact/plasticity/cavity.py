@@ -23,10 +23,14 @@ from restitution.arguments import typed
 from restitution.contact.bodies import Pair
 from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import elastic_pressure
-from restitution.contact.models import Plasticity, set_field
+from restitution.contact.models import set_field
 from restitution.contact.plasticity.bound import ConstantBound
 from restitution.contact.plasticity.increments import ChangingBound
-from restitution.contact.plasticity.size_effect import strengthening_at
+from restitution.contact.plasticity.size_effect import (
+    SizedBound,
+    strengthening_at,
+    strengthening_of_waves,
+)
 from restitution.contact.state import Array, State
 from restitution.display import quantity
 from restitution.errors import CaseError
@@ -150,9 +154,9 @@ class ExpandingCavity(ChangingBound):
         strain = _TABOR * math.pi / 2 * onset / pair.contact_modulus  # at first yield
         return onset, GROWTH * Y, LARGEST * Y, self.hardening_modulus(pair) * strain / Y
 
-    def of_asperities(self, pair: Pair, elastic_pressure: float) -> ConstantBound:
-        largest = np.asarray(_PEAK * elastic_pressure)
-        return ConstantBound(float(self.bound_at(pair, largest)))
+    def of_asperities(self, pair: Pair, elastic_pressure: float) -> ConstantBound | SizedBound:
+        bound = float(self.bound_at(pair, np.asarray(_PEAK * elastic_pressure)))
+        return SizedBound(bound, self.size_effect) if self.size_effect else ConstantBound(bound)
 
     def bound_of_waves(
         self, contact: Contact, depth: float, measure: Array, nominal: float
@@ -161,8 +165,9 @@ class ExpandingCavity(ChangingBound):
         separate = 1 - merged * np.sqrt(merged)
         gap = contact.crest_gap
         ratio = _DEPTH_FACTOR * np.maximum(depth - gap, 0) / (_DEPTH_FACTOR * depth - gap)
-        measure = measure * ratio**separate
-        return self.bound_at(contact.pair, measure, contact.elongation * separate)
+        harder = strengthening_of_waves(contact, depth, self.size_effect, math.sqrt(2) * measure)
+        measure = measure * ratio**separate / harder
+        return harder * self.bound_at(contact.pair, measure, contact.elongation * separate)
 
     def smooth_bounds(self, pair: Pair, count: int) -> tuple[Array, Array]:
         first = self.first_yield_pressure(pair)

@@ -15,10 +15,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from restitution.arguments import typed
-from restitution.contact.bodies import Pair
 from restitution.contact.contact import Contact
-from restitution.contact.equilibrium import elastic_pressure
+from restitution.contact.equilibrium import elastic_pressure, solve_nonadhesive
 from restitution.contact.models import set_field
+from restitution.contact.plasticity.bound import ConstantBound
 from restitution.contact.plasticity.increments import ChangingBound
 from restitution.contact.state import Array, State
 from restitution.display import quantity
@@ -29,6 +29,7 @@ from restitution.numerics.read_only import freeze
 BERKOVICH = 0.358  # tangent of the angle between the surface and a cone that equals the indenter
 _DEPTH_FACTOR = 2.0  # the elastic pressure is computed at this multiple of the indentation
 _RESIDUAL = 1.5e-4  # of the elastic pressure
+_INCOMPLETE = 0.99  # largest mean indentation of elastic periodic bodies, over the mean gap
 
 
 def equivalent_depth(density: Array) -> Array:
@@ -45,7 +46,7 @@ def dislocation_density(contact: Contact, pressure: Array, *, periodic: bool = F
 
     `pressure` (Pa) is that between elastic bodies at twice the indentation, 0 where the undeformed
     surfaces do not overlap at the indentation. Where patches merge, the density is the mean over
-    the contours of p² that enclose the node.
+    the contours of the pressure that enclose the node.
     """
     density = np.empty(pressure.shape)
     contour_means(np.ascontiguousarray(pressure, dtype=float), periodic, density)
@@ -54,9 +55,19 @@ def dislocation_density(contact: Contact, pressure: Array, *, periodic: bool = F
     return density
 
 
-def strengthening(contact: Contact, length: float, density: Array) -> Array:
+def strengthening(length: float, density: Array) -> Array:
     """Ratio √(1 + h*/h) of hardness to bulk hardness, for h* = `length` (m)."""
     return np.asarray(np.sqrt(1 + length * density / (1.5 * BERKOVICH**2)))
+
+
+def strengthening_of_waves(
+    contact: Contact, depth: float, length: float, pressure: Array
+) -> Array | float:
+    """`strengthening` on the nodes of a periodic patch of short waves, as `strengthening_at`."""
+    if not length:
+        return 1.0
+    pressure = np.where(contact.gap < depth, pressure, 0.0)
+    return strengthening(length, dislocation_density(contact, pressure, periodic=True))
 
 
 def strengthening_at(
@@ -74,13 +85,12 @@ def strengthening_at(
     pressure = np.where(contact.gap[box] < indentation, pressure, 0.0)
     if not (touching := pressure > 0).any():
         return 1.0
-    factor = strengthening(contact, length, dislocation_density(contact, pressure))
+    density = dislocation_density(contact, pressure, periodic=contact.periodic)
+    factor = strengthening(length, density)
     if not touching.all():
         nearest = distance_transform_edt(~touching, return_distances=False, return_indices=True)
         factor = factor[tuple(nearest)]
-    around = [
-        (side.start, n - side.stop) for side, n in zip(box, contact.grid.nodes, strict=True)
-    ]
+    around = [(side.start, n - side.stop) for side, n in zip(box, contact.grid.nodes, strict=True)]
     return np.pad(factor, around, mode="edge")
 
 
@@ -105,6 +115,7 @@ class SizedBound(ChangingBound):
     size_effect: float
 
     label = "equilibrium"
+    for_periodic = True
     strengths = ("yield_pressure",)
 
     def __post_init__(self) -> None:
@@ -123,7 +134,14 @@ class SizedBound(ChangingBound):
         self, contact: Contact, indentation: float, residual: float
     ) -> tuple[Array | float, int]:
         depth = max(indentation, 0.0)
-        pressure, box, convolutions = elastic_pressure(contact, _DEPTH_FACTOR * depth, _RESIDUAL)
+        if contact.periodic:
+            deep = min(_DEPTH_FACTOR * depth, _INCOMPLETE * float(contact.gap.mean()))
+            elastic = solve_nonadhesive(contact, deep, math.inf, _RESIDUAL)
+            pressure, box = elastic.box_pressure, elastic.box
+            convolutions = elastic.convolutions
+        else:
+            deep = _DEPTH_FACTOR * depth
+            pressure, box, convolutions = elastic_pressure(contact, deep, _RESIDUAL)
         factor = strengthening_at(contact, depth, self.size_effect, (pressure, box))
         bound = np.broadcast_to(self.yield_pressure * factor, contact.grid.nodes)
         return freeze(np.ascontiguousarray(bound)), convolutions
@@ -137,3 +155,13 @@ class SizedBound(ChangingBound):
         if indentation <= state.indentation:
             return state.bound, 0
         return self.bound(state.contact, indentation, residual)
+
+    def bound_of_waves(
+        self, contact: Contact, depth: float, measure: Array, nominal: float
+    ) -> Array:
+        pressure = math.sqrt(2) * measure  # at twice the indentation
+        waves = strengthening_of_waves(contact, depth, self.size_effect, pressure)
+        return np.broadcast_to(self.yield_pressure * waves, measure.shape)
+
+    def difference(self, contact: Contact, restitution: float) -> float:
+        return ConstantBound(self.yield_pressure).difference(contact, restitution)
