@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 import restitution as rs
+from restitution.errors import DomainError
 
 TABLE = Path(__file__).with_name("random_cases.csv")
 DEPTHS = 80  # of the sum of the force
@@ -47,7 +48,7 @@ def row(seed):
             rs.solve(case, depth)
             states = list(rs.loading_path(case, depths))
             break
-        except rs.DomainError:  # at the edge of the grid
+        except DomainError:  # at the edge of the grid
             depth *= 0.8
     deepest = rs.solve(case, depth)  # whose work is summed over fewer depths
     force = np.array([state.force for state in states])

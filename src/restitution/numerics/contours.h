@@ -4,7 +4,7 @@
 // where it merges with another part. Parts are stored after those that they have merged from.
 struct ContourPart {
     Index inside, into;  // the part it belongs to now (a shortcut), and the one it merged into
-    double end, sum, count, below;
+    double end, sum, logs, below;
 };
 
 inline void contour_means(Rows<const double> values, bool periodic, Rows<double> out) {
@@ -66,15 +66,15 @@ inline void contour_means(Rows<const double> values, bool periodic, Rows<double>
         home[node] = part;
         peak[node] = highest < 0 ? part : peak[highest];
         parts[peak[node]].sum += at(node);
-        parts[peak[node]].count += 1;
+        parts[peak[node]].logs += at(node) * std::log(at(node));
     }
     for (ContourPart& part : parts) {
         if (part.into < 0) continue;
         parts[part.into].sum += part.sum;
-        parts[part.into].count += part.count;
+        parts[part.into].logs += part.logs;
     }
     const auto mean = [&](const ContourPart& part, double level) {
-        const double own = part.sum / (part.count * std::sqrt(part.count));
+        const double own = std::exp(1.5 * part.logs / part.sum) / std::sqrt(part.sum);
         return part.into < 0 ? own : own + part.end / level * (part.below - own);
     };
     for (Index k = Index(parts.size()) - 1; k >= 0; --k)

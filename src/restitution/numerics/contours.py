@@ -14,10 +14,11 @@ Array = NDArray[Any]  # double precision
 
 @use_loop
 def contour_means(values: Array, periodic: bool, out: Array) -> None:
-    """Write the mean of Σ v/n^1.5 over the contours around each node into `out`; 0 where v ≤ 0.
+    """Write the mean of S/n^1.5 over the contours around each node into `out`; 0 where v ≤ 0.
 
-    Between two saddles, the contours around a node belong to one part of the array; Σ v and n are
-    the sum and the number of nodes of its catchment. The mean is over the levels from 0 to v.
+    Between two saddles, the contours around a node belong to one part of the array. S = Σ v is the
+    sum over its catchment, and n = S exp(−Σ v ln v/S) the number of nodes there, without those of
+    small v: the exponential of an entropy. The mean is over the levels from 0 to v.
     """
     rows, columns = values.shape
     flat = values.ravel()
@@ -25,7 +26,9 @@ def contour_means(values: Array, periodic: bool, out: Array) -> None:
     home, peak = np.full(flat.size, -1), np.full(flat.size, -1)
     inside: list[int] = []
     into: list[int] = []
-    end, total, count = [], [], []
+    end: list[float] = []
+    total: list[float] = []
+    logs: list[float] = []
 
     def now(part: int) -> int:
         while inside[part] != part:
@@ -44,20 +47,22 @@ def contour_means(values: Array, periodic: bool, out: Array) -> None:
         else:
             part = len(inside)
             inside.append(part)
-            for new, first in ((into, -1), (end, 0.0), (total, 0.0), (count, 0)):
-                new.append(first)
+            into.append(-1)
+            for new in (end, total, logs):
+                new.append(0.0)
             for merged in old:
                 inside[merged] = into[merged] = part
                 end[merged] = value
         home[node] = part
         peak[node] = peak[max(others, key=flat.__getitem__)] if others else part
         total[peak[node]] += value
-        count[peak[node]] += 1
+        logs[peak[node]] += value * float(np.log(value))
     for part, whole in enumerate(into):
         if whole >= 0:
             total[whole] += total[part]
-            count[whole] += count[part]
-    own, below = np.array(total) / np.array(count, dtype=float) ** 1.5, np.zeros(len(into))
+            logs[whole] += logs[part]
+    sums = np.array(total)
+    own, below = np.exp(1.5 * np.array(logs) / sums) / np.sqrt(sums), np.zeros(len(into))
 
     def mean(part: int, level: float) -> float:
         below_it = below[part] if into[part] >= 0 else own[part]

@@ -165,7 +165,7 @@ class ExpandingCavity(ChangingBound):
         separate = 1 - merged * np.sqrt(merged)
         gap = contact.crest_gap
         ratio = _DEPTH_FACTOR * np.maximum(depth - gap, 0) / (_DEPTH_FACTOR * depth - gap)
-        harder = strengthening_of_waves(contact, depth, self.size_effect, math.sqrt(2) * measure)
+        harder = strengthening_of_waves(contact, self.size_effect, math.sqrt(2) * measure)
         measure = measure * ratio**separate / harder
         return harder * self.bound_at(contact.pair, measure, contact.elongation * separate)
 
@@ -193,7 +193,8 @@ def yield_bound(contact: Contact, indentation: float, residual: float) -> tuple[
     harder: Array | float = 1.0
     logarithms = np.broadcast_to(np.zeros(pressure.shape[1]), pressure.shape)
     if model.size_effect:
-        harder = strengthening_at(contact, indentation, model.size_effect, (pressure, box))
+        harder, count = strengthening_at(contact, indentation, model.size_effect)
+        convolutions += count
         logarithms = np.log(np.broadcast_to(harder, bound.shape)[box])
     growing_bound(
         pressure,
