@@ -4,6 +4,7 @@ Appends one row for each case to random_cases.csv; a second call resumes.
 """
 
 import csv
+import itertools
 import math
 import sys
 from pathlib import Path
@@ -14,19 +15,19 @@ import restitution as rs
 from restitution.errors import DomainError
 
 TABLE = Path(__file__).with_name("random_cases.csv")
-DEPTHS = 80  # of the sum of the force
+DEPTHS = 60  # of the sum of the force
 LENGTHS = (0.0, 0.05e-6, 0.4e-6, 3e-6)
 
 
 def contact(rng, length):
-    nodes, spacing = int(rng.integers(40, 65)), float(rng.choice([0.1e-6, 0.2e-6]))
+    nodes, spacing = int(rng.integers(56, 81)), float(rng.choice([0.1e-6, 0.2e-6]))
     grid = rs.Grid((nodes, nodes), (spacing, spacing))
     body = rs.Body(float(rng.choice([50e-6, 500e-6])), 210e9, 0.3, 7850.0)
     surface = rs.generate_surface(
         grid,
         kind=str(rng.choice(["gaussian", "exponential"])),
         rms=float(rng.choice([3e-9, 10e-9, 30e-9])),
-        correlation_length=float(rng.choice([6, 12])) * spacing,
+        correlation_length=float(rng.choice([12, 24])) * spacing,
         seed=int(rng.integers(1000)),
     )
     grows, strength = bool(rng.random() < 0.5), float(rng.choice([0.3e9, 0.8e9, 2e9]))
@@ -35,15 +36,27 @@ def contact(rng, length):
     else:
         model = rs.SizedBound(strength, length) if length else rs.ConstantBound(strength)
     pair = rs.Pair(body, body)
-    deep = float(rng.uniform(0.2, 0.6)) * (0.5 * nodes * spacing) ** 2 / (2.4 * pair.radius)
+    deep = float(rng.uniform(0.3, 0.7)) * (0.5 * nodes * spacing) ** 2 / (2.4 * pair.radius)
     return rs.Contact(pair, surface, model), deep
 
 
-def row(seed):
-    length = LENGTHS[seed % 3 + 1]
-    case, depth = contact(np.random.default_rng(seed), length)
+def resolved(state):
+    """Whether half of the contact is in patches of at least 20 nodes."""
+    sizes = state.patch_sizes()
+    return sizes.size and sizes[np.searchsorted(np.cumsum(sizes), 0.5 * sizes.sum())] >= 20
+
+
+def row(number, first):
+    length = LENGTHS[number % 3 + 1]
+    for seed in itertools.count(first):
+        case, depth = contact(np.random.default_rng(seed), length)
+        try:
+            if resolved(rs.solve(case, 0.4 * depth)):
+                break
+        except DomainError:
+            continue
     while True:
-        depths = depth * np.geomspace(0.02, 1, DEPTHS)
+        depths = depth * np.geomspace(0.1, 1, DEPTHS)
         try:
             rs.solve(case, depth)
             states = list(rs.loading_path(case, depths))
@@ -84,12 +97,14 @@ def row(seed):
 
 
 def main():
-    done = sum(1 for _ in TABLE.open()) - 1 if TABLE.exists() else 0
-    for seed in range(done, int(sys.argv[1])):
-        values = row(seed)
+    known = list(csv.DictReader(TABLE.open())) if TABLE.exists() else []
+    seed = int(known[-1]["seed"]) if known else -1
+    for number in range(len(known), int(sys.argv[1])):
+        values = row(number, seed + 1)
+        seed = values["seed"]
         with TABLE.open("a", newline="") as file:
             writer = csv.DictWriter(file, values, lineterminator="\n")
-            if seed == 0:
+            if number == 0:
                 writer.writeheader()
             writer.writerow(
                 {k: f"{v:.4g}" if isinstance(v, float) else v for k, v in values.items()}

@@ -52,6 +52,7 @@ from restitution.runs.result_warnings import (
     velocities_missed,
 )
 from restitution.runs.run_in import require_run_in, run_in
+from restitution.runs.size_effect import left_out
 from restitution.runs.smooth import smooth_curve
 from restitution.runs.two_scales import patch_curve, solve_patches, told
 from restitution.surfaces import describe
@@ -143,6 +144,10 @@ def run_case(
             finally:
                 run.band_errors = budget.band
                 out.put_curve(budget.points)
+            if run.deepest is not None:
+                with suppress(RestitutionError):  # the companion curve cannot be computed
+                    finding = left_out(case, folder, out.curve, run.deepest)
+                    run.warnings += [] if finding is None else [finding.text()]
         if is_oblique(case) and out.curve.points:
             oblique, missing = oblique_points(case, contact.surface, out)
             out.put_oblique(oblique)

@@ -18,6 +18,8 @@ from restitution.numerics.expressions import dot
 # fractions come from a comparison with steps that are 11 times finer. At nodes that begin to yield,
 # the mean of the bound during yielding is the bound before the step plus _NEW times the growth.
 _RULE_ERROR, _NEW, _NEW_ERROR = 0.1, 0.8, 0.25
+# Factor of this error if the bound falls where patches merge (evidence/size_effect).
+_OF_MERGING = 3.0
 # The plastic work is a sum over depths. The first depth is _SHALLOW times the indentation, and each
 # further depth is at most _RATIO times the one before, because the error of a step holds up to this
 # ratio.
@@ -57,6 +59,7 @@ class ChangingBound(Plasticity):
             new -= on
         share = ratio / (ratio - 1) - 1 / math.log(ratio) if 1 < ratio < math.inf else 0.5
         work, error = share * on + _NEW * new, _RULE_ERROR * abs(on) + _NEW_ERROR * abs(new)
+        error *= _OF_MERGING if self.size_effect else 1.0
         return (whole + work) * contact.grid.cell_area, error * contact.grid.cell_area
 
     def with_loading_work(self, state: State, start: State | None, load: Load) -> State:

@@ -33,15 +33,6 @@ _RESIDUAL = 1.5e-4  # of the elastic pressure
 _INCOMPLETE = 0.99  # largest mean indentation of elastic periodic bodies, over the mean gap
 
 
-def equivalent_depth(density: Array) -> Array:
-    """Depth (m) of a Berkovich indent with this density of dislocations.
-
-    `density` (1/m) is multiplied by the Burgers vector: 1/R for a sphere.
-    """
-    with np.errstate(divide="ignore"):
-        return np.asarray(1.5 * BERKOVICH**2 / density)
-
-
 def dislocation_density(contact: Contact, pressure: Array, *, periodic: bool = False) -> Array:
     """Density of dislocations times the Burgers vector (1/m) at each node, 0 without pressure.
 
