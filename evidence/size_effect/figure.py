@@ -6,14 +6,12 @@ import sys
 import warnings
 from pathlib import Path
 
-import numpy as np
-
 from restitution import run
 from restitution.plots.cor import cor_axis
 from restitution.plots.figure import GREY, PALETTE, Axis, Chart, Figure, Line, Points
 
-HERE = Path(__file__).parent
-sys.path[:0] = [str(HERE.parent), str(HERE.parent / "run_in")]
+sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path.insert(0, str(Path(__file__).parents[1] / "run_in"))
 from figure_10 import COVERAGE, RESULTS, case, columns
 from shared import HERE as EVIDENCE
 from shared import write_image, write_table

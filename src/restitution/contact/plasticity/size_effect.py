@@ -51,14 +51,26 @@ def strengthening(length: float, density: Array) -> Array:
     return np.asarray(np.sqrt(1 + length * density / (1.5 * BERKOVICH**2)))
 
 
+def _spread(density: Array) -> Array:
+    """Give nodes without density that of the nearest node with one."""
+    from scipy.ndimage import distance_transform_edt
+
+    none = density == 0
+    if not none.any():
+        return density
+    nearest = distance_transform_edt(none, return_distances=False, return_indices=True)
+    return np.asarray(density[tuple(nearest)])
+
+
 def strengthening_of_waves(contact: Contact, length: float, pressure: Array) -> Array | float:
-    """`strengthening` on the nodes of a periodic patch of short waves.
+    """`strengthening_at` on a periodic patch of short waves.
 
     `pressure` (Pa) is that between elastic bodies at any larger indentation: asperities are round.
     """
-    if not length:
+    if not length or not pressure.any():
         return 1.0
-    return strengthening(length, dislocation_density(contact, pressure, periodic=True))
+    density = dislocation_density(contact, pressure, periodic=True)
+    return strengthening(length, _spread(density))
 
 
 def strengthening_at(
@@ -68,8 +80,6 @@ def strengthening_at(
 
     Nodes without pressure have the value of the nearest patch.
     """
-    from scipy.ndimage import distance_transform_edt
-
     deep = _DEEPER * indentation
     if contact.periodic:
         deep = min(deep, _INCOMPLETE * float(contact.gap.mean()))
@@ -77,14 +87,10 @@ def strengthening_at(
         pressure, box, count = elastic.box_pressure, elastic.box, elastic.convolutions
     else:
         pressure, box, count = elastic_pressure(contact, deep, _RESIDUAL)
-    touching = pressure > 0
-    if not touching.any():
+    if not pressure.any():
         return 1.0, count
     density = dislocation_density(contact, pressure, periodic=contact.periodic)
-    factor = strengthening(length, density)
-    if not touching.all():
-        nearest = distance_transform_edt(~touching, return_distances=False, return_indices=True)
-        factor = factor[tuple(nearest)]
+    factor = strengthening(length, _spread(density))
     around = [
         (side.start, n - side.stop) for side, n in zip(box, contact.grid.nodes, strict=True)
     ]
