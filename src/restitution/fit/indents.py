@@ -162,7 +162,8 @@ def fit_size_effect(indents: Indents) -> SizeEffect:
     begin[1] = math.log(slope) - 2 * begin[0]
 
     def residuals(x: Array) -> Array:
-        return (np.log(H) - x[0] - 0.5 * np.log1p(math.exp(min(x[1], 60.0)) / h)) / noise
+        fitted = x[0] + 0.5 * np.log1p(math.exp(min(x[1], 60.0)) / h)
+        return np.asarray((np.log(H) - fitted) / noise)
 
     fitted = least_squares(residuals, begin)
     freedom = h.size - 2

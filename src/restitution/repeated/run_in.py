@@ -298,7 +298,8 @@ class RunIn:
             for body, centre in zip(self._bodies, at, strict=True)
             if body.yields
         ]
-        soft = [body.borne[part] <= bound for body, part in worn]
+        alike = end.contact.plasticity.alike
+        soft = [body.borne[part] <= alike * bound for body, part in worn]
         share = given / np.sum(soft, axis=0)
         for (body, part), softer in zip(worn, soft, strict=True):
             body.height[part] -= np.where(softer, share, 0.0)

@@ -146,8 +146,8 @@ def run_case(
                 out.put_curve(budget.points)
             if run.deepest is not None:
                 with suppress(RestitutionError):  # the companion curve cannot be computed
-                    finding = left_out(case, folder, out.curve, run.deepest)
-                    run.warnings += [] if finding is None else [finding.text()]
+                    if finding := left_out(case, folder, out.curve, run.deepest):
+                        run.warn(finding.text())
         if is_oblique(case) and out.curve.points:
             oblique, missing = oblique_points(case, contact.surface, out)
             out.put_oblique(oblique)

@@ -119,6 +119,7 @@ class SizedBound(ChangingBound):
 
     label = "equilibrium"
     for_periodic = True
+    alike = 1.1  # as bodies of nearly the same strength (case/interface)
     strengths = ("yield_pressure",)
 
     def __post_init__(self) -> None:
