@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from scipy.integrate import simpson
 
 import restitution as rs
 from restitution.errors import DomainError
@@ -46,6 +47,14 @@ def resolved(state):
     return sizes.size and sizes[np.searchsorted(np.cumsum(sizes), 0.5 * sizes.sum())] >= 20
 
 
+def unloading_work(deepest):
+    """By Simpson's rule: step k of n of a path is at (1 - k/n)² of the depth."""
+    path = list(rs.unloading_path(deepest, steps=64))
+    at = np.array([state.indentation for state in path]) - path[-1].indentation
+    force = np.array([state.force for state in path])
+    return float(simpson(force * 2 * np.sqrt(at * at[0]), np.linspace(0, 1, force.size)))
+
+
 def row(number, first):
     length = LENGTHS[number % 3 + 1]
     for seed in itertools.count(first):
@@ -70,10 +79,7 @@ def row(number, first):
     outside = states[0].loading_work + float(parts.sum())
     given = np.diff([state.plastic_displacement for state in states], axis=0)
     curve = [rs.collide(state) for state in states]
-    unloaded = list(rs.unloading_path(deepest))
-    at = np.array([state.indentation for state in unloaded])
-    F = np.array([state.force for state in unloaded])
-    returned = -float(np.sum(0.5 * (F[1:] + F[:-1]) * np.diff(at)))
+    returned = unloading_work(deepest)
     order = []
     for other in LENGTHS:
         same, _ = contact(np.random.default_rng(seed), other)

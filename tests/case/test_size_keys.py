@@ -92,7 +92,7 @@ def test_a_periodic_contact_needs_indentations():
 
 
 def tables(**interface):
-    case = {
+    return {
         "total_error": False,
         "first": {"material": "steel", "radius": "0.5 mm"},
         "second": {"material": "copper", "radius": "flat"},
@@ -107,7 +107,6 @@ def tables(**interface):
         "impact": {"velocity": "0.01 m/s"},
         "unloading": {"curves": 0},
     }
-    return case
 
 
 def test_a_run_stores_h_star_and_returns_more_energy():
@@ -119,10 +118,31 @@ def test_a_run_stores_h_star_and_returns_more_energy():
     assert none.curve.restitution[0] == run(tables()).curve.restitution[0]
 
 
-def test_many_impacts_and_waves_below_the_grid_know_h_star():
+def test_many_impacts_know_h_star():
     runs = []
     for size in ("3 um", "0 um"):
         case = tables(size_effect=size)
         case["impacts"] = {"coverage": 0.3, "places": 2}
         runs.append(run(case).run_in[-1].restitution)
     assert runs[0] > runs[1]
+
+
+@pytest.mark.parametrize("strength", [{}, {"yield_strength": "0.3 GPa", "yield_pressure": None}])
+def test_waves_below_the_grid_know_h_star(strength):
+    e = []
+    for size in ("3 um", "0 um"):
+        case = tables(size_effect=size)
+        case["interface"] |= strength
+        case["interface"] = {key: v for key, v in case["interface"].items() if v is not None}
+        case["roughness"] = {
+            "kind": "self-affine",
+            "rms": "15 nm",
+            "hurst": 0.8,
+            "rolloff": "2 um",
+            "shortest": "0.4 um",
+            "seed": 1,
+            "below_grid": "patch",
+            "split": "0.8 um",
+        }
+        e.append(float(run(case).curve.restitution[0]))
+    assert e[0] > e[1] + 0.01

@@ -47,7 +47,8 @@ class Plasticity(ABC):
             elastic pressure (bool).
         for_periodic: Whether the model is defined for periodic contacts (bool).
         strengths: Names of the fields that are strengths of the material.
-        alike: Ratio of the bounds of two bodies at a node up to which both yield in later impacts.
+        alike: Ratio of the bounds of two bodies at a node up to which both yield in later impacts
+            (dimensionless).
         size_effect: Depth h* (m) from which small contacts are harder (docs/size-effect.md); 0
             without.
     """

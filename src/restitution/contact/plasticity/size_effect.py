@@ -91,9 +91,7 @@ def strengthening_at(
         return 1.0, count
     density = dislocation_density(contact, pressure, periodic=contact.periodic)
     factor = strengthening(length, _spread(density))
-    around = [
-        (side.start, n - side.stop) for side, n in zip(box, contact.grid.nodes, strict=True)
-    ]
+    around = [(side.start, n - side.stop) for side, n in zip(box, contact.grid.nodes, strict=True)]
     return np.pad(factor, around, mode="edge"), count
 
 
