@@ -127,6 +127,7 @@ def test_many_impacts_know_h_star():
     assert runs[0] > runs[1]
 
 
+@pytest.mark.filterwarnings("ignore::UserWarning")  # of this coarse grid
 @pytest.mark.parametrize("strength", [{}, {"yield_strength": "0.3 GPa", "yield_pressure": None}])
 def test_waves_below_the_grid_know_h_star(strength):
     e = []
