@@ -38,7 +38,8 @@ def contour_means(values: Array, periodic: bool, out: Array) -> None:
 
     for node in order.tolist():
         value, others = float(flat[node]), []
-        for other in _around(*divmod(node, columns), rows, columns, periodic):
+        i, j = divmod(node, columns)
+        for other in _around(i, j, rows, columns, periodic):
             if home[other] >= 0:
                 others.append(other)
         old = {now(int(home[other])) for other in others}
