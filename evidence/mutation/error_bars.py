@@ -26,6 +26,7 @@ TESTS = {
     "verification/test_adhesive_restitution.py",
     "contact/plasticity/cavity.py": "contact/test_work_error.py contact/test_cavity.py "
     "contact/test_model_error.py",
+    "contact/plasticity/increments.py": "contact/test_work_error.py contact/test_cavity.py",
     "contact/plasticity/truncated.py": "contact/test_work_error.py contact/test_loading.py",
     "contact/plasticity/bound.py": "contact/test_model_error.py",
     "contact/jkr/separation.py": "contact/test_separation.py contact/test_cohesive.py "

@@ -28,6 +28,7 @@ from .contact.path import unloading_path as unloading_path
 from .contact.plasticity.bound import ConstantBound as ConstantBound
 from .contact.plasticity.bound import Elastic as Elastic
 from .contact.plasticity.cavity import ExpandingCavity as ExpandingCavity
+from .contact.plasticity.size_effect import SizedBound as SizedBound
 from .contact.plasticity.truncated import Truncated as Truncated
 from .contact.prescribed.force import solve_at_force as solve_at_force
 from .contact.prescribed.pressure import solve_at_pressure as solve_at_pressure

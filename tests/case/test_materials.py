@@ -26,6 +26,7 @@ def test_the_materials_asked_for_are_there():
         "steel",
         "stainless-steel",
         "aluminium",
+        "copper",
         "glass",
         "silica",
         "quartz",
@@ -60,8 +61,8 @@ def test_every_quantity_has_a_spread_and_a_source(entry):
     for value in properties(entry).values():
         assert value.low <= value.value <= value.high
         assert len(value.source) > 20
-    if entry.surface_energy:
-        assert len(entry.surface_energy.conditions) > 20
+    for known in filter(None, (entry.surface_energy, entry.size_effect)):
+        assert len(known.conditions) > 20
 
 
 @each_material

@@ -149,3 +149,41 @@ def test_nothing_is_overwritten(refused, files):
     arguments = ("--case", files / "case.toml", "--free", "yield_pressure", "-o", out)
     assert "is not empty" in refused("fit", files / "m.csv", *arguments)
     assert (out / "mine").exists()
+
+
+INDENTS = "depth_nm,hardness_GPa\n" + "".join(
+    f"{h},{1.2 * (1 + 400 / h) ** 0.5:.5g}\n" for h in (60, 100, 200, 400, 1000, 3000)
+)
+
+
+def test_indents_give_the_size_effect(cli, files):
+    (files / "h.csv").write_text(INDENTS)
+    out = files / "out"
+    status, said, _ = cli("fit", files / "h.csv", "--case", files / "case.toml", "-o", out)
+    assert status == 0
+    assert "H0 = 1.2 GPa, 95 % interval 1.2 GPa to 1.2 GPa" in said
+    assert 'In [interface] of a case: yield_pressure = "1.2 GPa", size_effect = "0.4 um"' in said
+    found = json.loads((out / "fit.json").read_text())
+    assert found["size_effect_m"]["value"] == approx(400e-9, rel=1e-3)
+    assert found["size_effect_m"]["low"] <= 400.2e-9
+    case, _ = read_case(out / "case.toml")
+    assert case.yielding().size_effect == approx(400e-9, rel=1e-3)
+    assert case.yielding().hardness == approx(1.2e9, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [(("--free", "rms"), "leave --free out"), ((), "rises with depth, from 1.5 GPa to 5.5 GPa")],
+)
+def test_indents_that_cannot_be_fitted(refused, files, more, words):
+    rising = "".join(f"{100 * k},{k}\n" for k in range(1, 7))
+    (files / "h.csv").write_text("depth_nm,hardness_GPa\n" + rising)
+    assert words in refused("fit", files / "h.csv", *more, "-o", files / "out")
+    assert not (files / "out").exists()
+
+
+@pytest.mark.parametrize("given", ["--case", "--free"])
+def test_restitution_needs_a_case_and_keys(refused, files, given):
+    more = {"--case": ("--free", "rms"), "--free": ("--case", files / "case.toml")}[given]
+    said = refused("fit", files / "m.csv", *more, "-o", files / "out")
+    assert f"{given}: is missing" in said

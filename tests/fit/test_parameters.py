@@ -86,3 +86,9 @@ def test_the_rms_of_a_scan_is_refused():
     content = parse_toml('[roughness]\nkind = "measured"\nfile = "a.npz"\n')
     with pytest.raises(CaseError, match="is a scan, whose heights are known"):
         free_parameters(content, ["rms"])
+
+
+def test_the_size_effect_can_be_free():
+    interface = {"yield_pressure": "1 GPa", "size_effect": "0.4 um", "hardness_depth": "1 um"}
+    (free,) = free_parameters({"interface": interface}, ["size_effect"])
+    assert (free.key, free.value, free.unit) == ("interface.size_effect", 0.4e-6, "m")

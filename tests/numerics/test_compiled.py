@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 from restitution.numerics import kernels
+from restitution.numerics.contours import contour_means
 from restitution.numerics.expressions import (
     add_curvature,
     advance,
@@ -277,12 +278,25 @@ def test_a_bound_that_grows_is_that_of_the_expressions(dtype, shape, seed, harde
         smooth,
         gaps,
         (1.0, 2.0),
+        rng.random(shape) - 0.2,
         constants,
         (0.11, 1.1, 0.25),
         np.full(shape, 9.0),
     )
     assert_allclose(found, expected, rtol=1e-12)
     assert_allclose(found[pressure == 0], 0.1, rtol=1e-15)
+
+
+@settings(deadline=None, max_examples=50)
+@given(st.tuples(st.integers(1, 9), st.integers(1, 20)), seeds, st.booleans(), st.booleans())
+def test_means_over_contours_are_those_of_the_expressions(shape, seed, with_ties, periodic):
+    rng = np.random.default_rng(seed)
+    heights = rng.integers(-1, 4, shape).astype(float) if with_ties else rng.normal(size=shape)
+    (_, (*_, expected)), (_, (*_, found)) = both(
+        contour_means, heights, periodic, np.full(shape, 9.0)
+    )
+    assert_allclose(found, expected, rtol=1e-12)
+    assert np.all((found > 0) == (heights > 0))
 
 
 @settings(deadline=None, max_examples=50)

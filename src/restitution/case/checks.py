@@ -120,6 +120,11 @@ def _check_period(case: CaseTables) -> None:
             'and plasticity = "equilibrium"; set yield_pressure to a pressure, "2.8 Y", '
             '"hardness" or "elastic"'
         )
+    if case.interface.size_effect and case.indentation is None:
+        raise ValueError(
+            "interface.size_effect: a periodic contact with a size effect needs [indentation], on "
+            "which its yield pressure depends"
+        )
     if not isinstance(case.grid.refine, int):
         raise ValueError("grid.refine: must be one number if the grid is periodic")
     if not case.roughness:

@@ -18,6 +18,7 @@ from restitution.case.models import (
 )
 from restitution.case.quantities import (
     Length,
+    LengthOrZero,
     Pressure,
     SurfaceEnergy,
     Unit,
@@ -36,6 +37,7 @@ MOST_FRICTION = 10.0  # largest coefficient of friction; a larger value must be 
 # Ratio of the strengths of two bodies below which both yield, and below which they are equal. The
 # harder one stays elastic if it first yields (at 1.6 Y) above full plasticity of the softer one.
 _BOTH_YIELD, _EQUAL = FULL_CONSTRAINT / 1.6, 1.1
+_SHARED = 0.5  # part of an imprint in each body if both yield
 # Models of plasticity that limit the contact pressure to a constant.
 _CONSTANT_BOUND = ("equilibrium", "truncated")
 
@@ -45,7 +47,7 @@ class Yielding:
     """The yield model of a contact.
 
     `source` says in words where the values come from. The other fields are the name of the model,
-    pressures in Pa, and the body that yields.
+    pressures in Pa (of large contacts), the body that yields, and h* of the size effect (m).
     """
 
     source: str
@@ -54,6 +56,7 @@ class Yielding:
     yield_strength: float = math.inf
     tangent_modulus: float = 0.0
     yields: Yields | None = None
+    size_effect: float = 0.0
 
     @property
     def hardness(self) -> float:
@@ -64,7 +67,11 @@ class Yielding:
     def model(self) -> PlasticityModel:
         """The model as a value."""
         return plasticity_of(
-            self.plasticity, self.yield_pressure, self.yield_strength, self.tangent_modulus
+            self.plasticity,
+            self.yield_pressure,
+            self.yield_strength,
+            self.tangent_modulus,
+            self.size_effect * (_SHARED if self.yields == "both" else 1.0),
         )
 
     def arguments(self) -> dict[str, Any]:
@@ -114,6 +121,30 @@ class InterfaceTable(Table):
         "[method](method.md)",
         default='`"expanding-cavity"` with a yield strength, `"equilibrium"` with a yield pressure',
         page=Input("Plasticity", more=True, empty="chosen from the values above"),
+    )
+    size_effect: LengthOrZero | None = key(
+        None,
+        "h\\* of [Nix and Gao](size-effect.md): small contacts are harder, as a Berkovich indent "
+        "of the depth h is √(1 + h\\*/h) times as hard as a large one",
+        default='`"0 um"`',
+        page=Input(
+            "Size effect h*",
+            hint="depth at which a Berkovich indent is √2 times as hard as the bulk",
+            slider=(1e-8, 1e-5),
+            more=True,
+        ),
+    )
+    hardness_depth: Length | None = key(
+        None,
+        "with `size_effect`: the depth of the indents at which the yield strength or pressure was "
+        "measured; the strength of large contacts is smaller by √(1 + h\\*/depth)",
+        default="infinite: measured on large bodies",
+        page=Input(
+            "Depth of the hardness",
+            hint="with a size effect; if empty, measured on large indents or in tension",
+            slider=(1e-8, 1e-3),
+            more=True,
+        ),
     )
     work_of_adhesion: SurfaceEnergy | None = key(
         None,
@@ -191,6 +222,19 @@ class InterfaceTable(Table):
         return self
 
     @model_validator(mode="after")
+    def _one_size(self) -> InterfaceTable:
+        if self.size_effect and self.plasticity == "truncated":
+            raise ValueError(
+                'size_effect: is not defined with plasticity = "truncated"; remove one of them'
+            )
+        if self.hardness_depth is not None and self.size_effect is None:
+            raise ValueError(
+                "hardness_depth: has no effect without size_effect (h* of the material); give it, "
+                "or remove hardness_depth"
+            )
+        return self
+
+    @model_validator(mode="after")
     def _one_attraction(self) -> InterfaceTable:
         if self.adhesion is not None and self.work_of_adhesion is None:
             raise ValueError(
@@ -224,7 +268,21 @@ class InterfaceTable(Table):
         """
         model = self._model(first, second)
         elastic = math.isinf(model.hardness)
-        return replace(model, yields=None if elastic else yielding_body(first, second))
+        model = replace(model, yields=None if elastic else yielding_body(first, second))
+        if not self.size_effect:
+            return model
+        if elastic:
+            raise CaseError(
+                "interface.size_effect: elastic bodies have no hardness; give a yield_pressure or "
+                "yield_strength, or remove size_effect"
+            )
+        harder = math.sqrt(1 + self.size_effect / (self.hardness_depth or math.inf))
+        return replace(
+            model,
+            yield_pressure=model.yield_pressure / harder,
+            yield_strength=model.yield_strength / harder,
+            size_effect=self.size_effect,
+        )
 
     def _model(self, first: BodyTable, second: BodyTable) -> Yielding:
         if self.yield_pressure is not None or self.plasticity in _CONSTANT_BOUND:

@@ -18,7 +18,7 @@ from typing import Annotated, Any, Generic, Self, TypeVar
 from pydantic import BeforeValidator, Field, model_validator
 
 from restitution.arguments import typed
-from restitution.case.quantities import Density, Pressure, SurfaceEnergy
+from restitution.case.quantities import Density, Length, Pressure, SurfaceEnergy
 from restitution.case.schema import Table
 from restitution.display import quantity, summary_html, summary_text
 from restitution.errors import CaseError, did_you_mean, shown
@@ -60,6 +60,12 @@ class SurfaceProperty(Property[SurfaceEnergy]):
     conditions: Text
 
 
+class SizeProperty(Property[Length]):
+    """h* of the size effect (m); `conditions` states how the metal was treated, and its H₀."""
+
+    conditions: Text
+
+
 class Material(Table):
     """A material, in SI units; a property that was found in no source is None.
 
@@ -77,6 +83,7 @@ class Material(Table):
     yield_strength: Property[Pressure] | None = None
     hardness: Property[Pressure] | None = None
     surface_energy: SurfaceProperty | None = None
+    size_effect: SizeProperty | None = None
 
     def _summary(self) -> list[str]:
         known = {
@@ -86,6 +93,7 @@ class Material(Table):
             "Y": (self.yield_strength, "Pa"),
             "H": (self.hardness, "Pa"),
             "γ": (self.surface_energy, "J/m²"),
+            "h*": (self.size_effect, "m"),
         }
         values = (f"{symbol} {_shown(p.value, unit)}" for symbol, (p, unit) in known.items() if p)
         return [f"{self.key}: {self.name}", ", ".join(values)]

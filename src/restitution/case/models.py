@@ -14,6 +14,7 @@ from restitution.contact.models import Adhesion as AdhesionModel
 from restitution.contact.models import Plasticity as PlasticityModel
 from restitution.contact.plasticity.bound import ConstantBound, Elastic
 from restitution.contact.plasticity.cavity import ExpandingCavity
+from restitution.contact.plasticity.size_effect import SizedBound
 from restitution.contact.plasticity.truncated import Truncated
 
 # The words of the keys; each is the label of a model.
@@ -34,12 +35,15 @@ def plasticity_of(
     yield_pressure: float = math.inf,
     yield_strength: float = math.inf,
     tangent_modulus: float = 0.0,
+    size_effect: float = 0.0,
 ) -> PlasticityModel:
     """Make a model of plasticity; infinite pressures mean elastic bodies."""
     if math.isfinite(yield_strength):
-        return ExpandingCavity(yield_strength, tangent_modulus)
+        return ExpandingCavity(yield_strength, tangent_modulus, size_effect)
     if math.isinf(yield_pressure):
         return Elastic()
+    if size_effect and plasticity != "truncated":
+        return SizedBound(yield_pressure, size_effect)
     return _AT_A_PRESSURE[plasticity or "equilibrium"](yield_pressure)
 
 

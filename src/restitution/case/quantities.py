@@ -190,6 +190,7 @@ class Unit:
 
 
 Length = Annotated[float, Unit("m")]
+LengthOrZero = Annotated[float, Unit("m", partial(read_positive, or_zero=True))]
 Pressure = Annotated[float, Unit("Pa")]
 Density = Annotated[float, Unit("kg/m^3")]
 SurfaceEnergy = Annotated[float, Unit("J/m^2", partial(read_positive, or_zero=True))]

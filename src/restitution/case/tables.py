@@ -10,7 +10,12 @@ from pydantic import BeforeValidator, model_validator
 from restitution.case.bodies import BodyTable, losses_of
 from restitution.case.impacts import ImpactsTable
 from restitution.case.interface import InterfaceTable, Yielding
-from restitution.case.materials import Property, with_library_adhesion, work_of_adhesion
+from restitution.case.materials import (
+    Property,
+    material,
+    with_library_adhesion,
+    work_of_adhesion,
+)
 from restitution.case.quantities import Force, Length, Pressure
 from restitution.case.roughness import Roughness
 from restitution.case.rulebook import Input, key
@@ -104,6 +109,14 @@ class CaseTables(Table):
         except CaseError:
             return None
         return known if known.value == w else None
+
+    def library_size_effect(self) -> tuple[str, Property[float]] | None:
+        """The softest material that yields and its h* in the library, if it has one."""
+        names = {name: body.material for name, body in self.bodies().items()}
+        yields = self.yielding().yields
+        key = names["first" if yields == "both" else yields] if yields else None
+        known = material(key).size_effect if key else None
+        return None if key is None or known is None else (key, known)
 
     def refined(self, factor: int | tuple[int, ...]) -> Self:
         """Return this case on cells `factor` times smaller; a tuple has a factor for each depth."""

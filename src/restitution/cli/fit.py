@@ -13,18 +13,32 @@ from restitution.cli.console import (
     warn,
 )
 from restitution.cli.parameters import FigureFormat
-from restitution.display import counted
+from restitution.display import counted, quantity
+from restitution.errors import CaseError
 from restitution.fit.findings import findings, identifiable, interval_in_words
 from restitution.fit.fit import Fit
 from restitution.fit.fit import fit as fitted
-from restitution.fit.fit_files import write_fit
+from restitution.fit.fit_files import keys_of, write_fit, write_size_effect
+from restitution.fit.indents import fit_size_effect, is_table_of_indents, read_indents
 from restitution.fit.measured import read_measured
 from restitution.plots.law import fit_figure
 from restitution.plots.static import write_figure
 from restitution.results.writer import make_folder
 
 
-def fit(measured: Path, case: Path, free: list[str], out: Path, figures: FigureFormat) -> None:
+def fit(
+    measured: Path,
+    out: Path,
+    case: Path | None,
+    free: list[str] | None,
+    figures: FigureFormat,
+) -> None:
+    if is_table_of_indents(measured):
+        _fit_indents(measured, out, case, free)
+        return
+    if case is None or free is None:
+        name = "--free" if case else "--case"
+        raise CaseError(f"{name}: is missing; restitution is fitted by keys of a case")
     names = [name.strip() for part in free for name in part.split(",") if name.strip()]
     table = read_measured(measured)
     _, text = read_case(case)
@@ -62,6 +76,28 @@ def fit(measured: Path, case: Path, free: list[str], out: Path, figures: FigureF
         warn(sentence)
     say_written(out, [path.name for path in written])
     say_next(command("run", out / "case.toml", "-o", "RESULTS"))
+
+
+def _fit_indents(measured: Path, out: Path, case: Path | None, free: list[str] | None) -> None:
+    if free:
+        raise CaseError(f"--free: {measured} has the hardness of indents; leave --free out")
+    if case is not None:
+        read_case(case)
+    result = fit_size_effect(read_indents(measured))
+    make_folder(out)
+    written = write_size_effect(result, out, case)
+    for label, name, unit in (("H0", "hardness", "Pa"), ("h*", "length", "m")):
+        low, high = (quantity(end, unit) for end in result.interval(name))
+        value = quantity(getattr(result, name), unit)
+        say(f"{label} = {value}, 95 % interval {low} to {high}")
+    rms = float((result.residuals**2).mean() ** 0.5)
+    say(f"{counted(result.indents.depth.size, 'indent')}, rms residual of hardness {rms:.2g}")
+    for sentence in result.findings():
+        warn(sentence)
+    say("In [interface] of a case: " + ", ".join(keys_of(result)))
+    say_written(out, [path.name for path in written])
+    if case is not None:
+        say_next(command("run", out / "case.toml", "-o", "RESULTS"))
 
 
 def _parameter(result: "Fit", k: int) -> str:

@@ -26,7 +26,9 @@ _QUANTITIES = {
     "yield_strength": ("yield strength (tensile)", "Y", 1e-6, "MPa"),
     "hardness": ("hardness (mean pressure)", "H", 1e-9, "GPa"),
     "surface_energy": ("surface energy", "γ", 1e3, "mJ/m^2"),
+    "size_effect": ("size effect", "h*", 1e6, "um"),
 }
+_UNLISTED = {"surface_energy", "size_effect"}  # known of few materials
 
 
 _WIDEST = 1000  # width (characters) in which every table fits
@@ -79,7 +81,7 @@ def _show_pairs(name: str | None, json: bool) -> None:
 
 
 def _list(shown: dict[str, Material], *, names: bool = True) -> Table:
-    listed = {key: row for key, row in _QUANTITIES.items() if key != "surface_energy"}
+    listed = {key: row for key, row in _QUANTITIES.items() if key not in _UNLISTED}
     heads = [f"{symbol} ({unit})" if unit else symbol for _, symbol, _, unit in listed.values()]
     material = [Column("material", no_wrap=True)] if names else []
     table = table_of_numbers(Column("name", no_wrap=True), *heads, *material)

@@ -192,28 +192,31 @@ def fit(
         given(
             "MEASURED",
             "CSV file with the columns velocity_m_per_s, restitution and, if known, "
-            "restitution_std.",
+            "restitution_std; or depth_nm and hardness_GPa of indents.",
         ),
     ],
+    out: OutFolder,
     case: Annotated[
-        Path,
+        Path | None,
         option(
             "CASE",
             "Case file (TOML); its values of KEYS are the first guesses.",
             "--case",
             readable=False,
         ),
-    ],
+    ] = None,
     free: Annotated[
-        list[str],
+        list[str] | None,
         option(
             "KEYS", "Keys of CASE to be fitted, separated by commas, such as yield_strength,rms."
         ),
-    ],
-    out: OutFolder,
+    ] = None,
     figures: Figures = FigureFormat.png,
 ) -> None:
-    """Find the values of KEYS in CASE that explain the restitution in MEASURED."""
+    """Find the values of KEYS in CASE that explain the restitution in MEASURED.
+
+    Of indents, find the size effect; they need no CASE and no KEYS.
+    """
 
 
 @verb("Compute", "many")

@@ -47,6 +47,10 @@ class Plasticity(ABC):
             elastic pressure (bool).
         for_periodic: Whether the model is defined for periodic contacts (bool).
         strengths: Names of the fields that are strengths of the material.
+        alike: Ratio of the bounds of two bodies at a node up to which both yield in later impacts
+            (dimensionless).
+        size_effect: Depth h* (m) from which small contacts are harder (docs/size-effect.md); 0
+            without.
     """
 
     label: ClassVar[str]
@@ -55,6 +59,8 @@ class Plasticity(ABC):
     bounds_solve: ClassVar[bool] = True
     for_periodic: ClassVar[bool] = True
     strengths: ClassVar[tuple[str, ...]] = ()
+    alike: ClassVar[float] = 1.0
+    size_effect: float = 0.0
 
     def scaled(self, factor: float) -> Plasticity:
         changed = {name: factor * getattr(self, name) for name in self.strengths}

@@ -9,9 +9,11 @@ from typing import Any
 
 import tomli_w
 
-from restitution.case.case_file import parse_toml
+from restitution.case.case_file import parse_case, parse_toml, read_case
+from restitution.contact.plasticity.cavity import FULL_CONSTRAINT
 from restitution.fit.findings import combination, findings, identifiable
 from restitution.fit.fit import Fit
+from restitution.fit.indents import DEPTH, HARDNESS, SizeEffect
 from restitution.fit.measured import DEVIATIONS, RESTITUTION, VELOCITY
 from restitution.fit.model import velocities_to_run
 from restitution.fit.uncertainty import CONFIDENCE
@@ -39,17 +41,71 @@ def write_fit(fit: Fit, text: str, out: Path) -> list[Path]:
     return [out / name for name in _NAMES]
 
 
+def keys_of(fit: SizeEffect) -> list[str]:
+    """The keys of `[interface]` that a fitted size effect sets."""
+    pressure, length = f"{1e-9 * fit.hardness:.4g} GPa", f"{1e6 * fit.length:.4g} um"
+    return [f'yield_pressure = "{pressure}"', f'size_effect = "{length}"']
+
+
+def write_size_effect(fit: SizeEffect, out: Path, case: Path | None = None) -> list[Path]:
+    """Write a fitted size effect into `out`, also into a copy of the file `case`."""
+    text = None if case is None else _with_size_effect(fit, case, out)
+    names = ["fit.json", "fit.csv"]
+    rows = [
+        {DEPTH: 1e9 * h, HARDNESS: 1e-9 * H, "fitted_hardness_GPa": 1e-9 * of, "residual": r}
+        for h, H, of, r in zip(
+            fit.indents.depth.tolist(),
+            fit.indents.hardness.tolist(),
+            fit.at(fit.indents.depth).tolist(),
+            fit.residuals.tolist(),
+            strict=True,
+        )
+    ]
+    with hold_signals():
+        write_json(out / "fit.json", fit.summary() | {"versions": versions()})
+        write_table(out / "fit.csv", rows)
+        if text is not None:
+            replace_file(out / "case.toml", lambda to: to.write_text(text, encoding="utf-8"))
+            names.append("case.toml")
+        write_checksums(out, tuple(names))
+    return [out / name for name in names]
+
+
+def _with_size_effect(fit: SizeEffect, case: Path, out: Path) -> str:
+    _, text = read_case(case)
+    content = parse_toml(text)
+    for part in _roughness(content):
+        _move_scans(part, case.parent, out)
+    interface = content.setdefault("interface", {})
+    grows = parse_case(text).yielding().plasticity == "expanding-cavity"
+    for key in ("yield_pressure", "hardness_depth"):
+        interface.pop(key, None)
+    key, strength = "yield_pressure", fit.hardness
+    if grows:
+        key, strength = "yield_strength", fit.hardness / FULL_CONSTRAINT
+    interface |= {key: f"{strength:.6g} Pa", "size_effect": f"{fit.length:.6g} m"}
+    return tomli_w.dumps(content)
+
+
 def fitted_case(fit: Fit, out: Path) -> str:
     content = parse_toml(fit.model.text(fit.x, velocities_to_run(fit.measured.velocity), _DIGITS))
-    rough = content.get("roughness", [])
-    for part in rough if isinstance(rough, list) else [rough]:
+    for part in _roughness(content):
         part["realisations"] = fit.model.surfaces
-        for table in (part, *part.get("scan", ())):
-            if "file" in table:
-                table["file"] = _moved(fit.model.folder, table["file"], out)
-        if "scans" in part:
-            part["scans"] = [_moved(fit.model.folder, name, out) for name in part["scans"]]
+        _move_scans(part, fit.model.folder, out)
     return tomli_w.dumps(content)
+
+
+def _roughness(content: dict[str, Any]) -> list[dict[str, Any]]:
+    rough = content.get("roughness", [])
+    return rough if isinstance(rough, list) else [rough]
+
+
+def _move_scans(part: dict[str, Any], folder: Path, out: Path) -> None:
+    for table in (part, *part.get("scan", ())):
+        if "file" in table:
+            table["file"] = _moved(folder, table["file"], out)
+    if "scans" in part:
+        part["scans"] = [_moved(folder, name, out) for name in part["scans"]]
 
 
 def _moved(folder: Path, name: str, out: Path) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import math
 import stat
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,6 +17,7 @@ from restitution.errors import CaseError, shown
 Array = NDArray[np.float64]
 
 VELOCITY, RESTITUTION = "velocity_m_per_s", "restitution"
+_NEEDED = {VELOCITY: "impact velocities in m/s", RESTITUTION: "e, 0 to 1"}
 # Columns with the standard deviation of COR. If the file has both, the first one is used.
 DEVIATIONS = ("restitution_std", "restitution_error")
 # For each column: the test of a value, and the message if it fails. The range of velocities is that
@@ -45,7 +46,7 @@ class Measured:
 
 def read_measured(path: Path) -> Measured:
     """Read a table of measured COR. Raises a `CaseError` that names file, line and column."""
-    rows = _rows(path)
+    rows = rows_of(path, _NEEDED)
     if not rows:
         raise CaseError(f"{path}: has no rows; write a row for each impact velocity")
     deviations = [name for name in DEVIATIONS if name in rows[0][1]]
@@ -59,7 +60,11 @@ def read_measured(path: Path) -> Measured:
     return Measured(V, e, std[0] if std else None)
 
 
-def _rows(path: Path) -> list[tuple[int, dict[str, str]]]:
+def rows_of(path: Path, needed: Mapping[str, str]) -> list[tuple[int, dict[str, str]]]:
+    """The rows of a CSV file with the numbers of their lines.
+
+    `needed` has the columns that it must have, and what they mean. Raises `CaseError`.
+    """
     try:
         kind = path.stat()
         if stat.S_ISDIR(kind.st_mode):
@@ -84,7 +89,7 @@ def _rows(path: Path) -> list[tuple[int, dict[str, str]]]:
         raise CaseError(f"{path}: cannot be read ({error.strerror or error})") from None
     except (UnicodeDecodeError, csv.Error) as error:
         raise CaseError(f"{path}: is not a CSV file in UTF-8 ({error})") from None
-    for name, meaning in ((VELOCITY, "impact velocities in m/s"), (RESTITUTION, "e, 0 to 1")):
+    for name, meaning in needed.items():
         if name not in columns:
             has = ", ".join(shown(column) for column in columns[:6]) or "none"
             raise CaseError(
@@ -103,10 +108,10 @@ def _number(path: Path, line: int, row: dict[str, str], column: str) -> float:
         value = math.nan
     if not math.isfinite(value):
         unit = " in m/s, without the unit" if column == VELOCITY else ""
-        raise _wrong(path, line, column, row, f"is not a number; write a number{unit}")
+        raise wrong_cell(path, line, column, row, f"is not a number; write a number{unit}")
     accepts, wrong = _ACCEPTED[column]
     if not accepts(value):
-        raise _wrong(path, line, column, row, wrong)
+        raise wrong_cell(path, line, column, row, wrong)
     return value
 
 
@@ -122,8 +127,9 @@ def _check_restitution(path: Path, line: int, row: dict[str, str], values: list[
         else f"{std:g}, assumed because the column {DEVIATIONS[0]} is missing; add this column, or "
         "correct the value"
     )
-    raise _wrong(path, line, RESTITUTION, row, limit + how)
+    raise wrong_cell(path, line, RESTITUTION, row, limit + how)
 
 
-def _wrong(path: Path, line: int, column: str, row: dict[str, str], why: str) -> CaseError:
+def wrong_cell(path: Path, line: int, column: str, row: dict[str, str], why: str) -> CaseError:
+    """An error that names a cell."""
     return CaseError(f"{path}: line {line}: {column} = {shown(row[column] or '')} {why}")

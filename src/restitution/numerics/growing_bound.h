@@ -25,13 +25,14 @@ template <class P>
 void growing_bound(Rows<const P> pressure,
                    const std::pair<Rows<const double>, Rows<const double>>& smooth,
                    const std::pair<Rows<const double>, Rows<const double>>& shape,
-                   const std::pair<double, double>& depths,
+                   const std::pair<double, double>& depths, Rows<const double> harder,
                    const std::tuple<double, double, double, double>& constants,
                    const std::tuple<double, double, double>& of_ridge, Rows<double> out) {
     const Rows<const double> along_x = smooth.first, along_y = smooth.second;
     const Rows<const double> crest_gap = shape.first, elongation = shape.second;
     if (along_x.count != pressure.count || along_y.length != pressure.length)
         throw std::invalid_argument("arrays of different shapes");
+    expect_one_shape(pressure, harder);
     const double deep = depths.first, deeper = depths.second, times = deeper / deep;
     const double onset = std::get<0>(constants), slope = std::get<1>(constants);
     const double largest = std::get<2>(constants), hardening = std::get<3>(constants);
@@ -43,6 +44,7 @@ void growing_bound(Rows<const P> pressure,
         for (Index i = begin; i < end; ++i) {
             const P* p = pressure[i];
             const double *gap = crest_gap[i], *elongations = elongation[i], *across = along_y[0];
+            const double* less = harder[i];
             double *bound = out[i], *strain = strains.data();
             const double here = along_x[i][0];
 #pragma omp simd
@@ -58,7 +60,7 @@ void growing_bound(Rows<const P> pressure,
                 const double under = deeper - crest, below = touches ? under : 1.0;
                 const double ridge = counts * elongated * apart, begin = 1 + more_onset * ridge;
                 const double logs = logarithm(value * per_onset / begin) +
-                                    apart * logarithm(times * left / below);
+                                    apart * logarithm(times * left / below) - less[j];
                 const double growth = counts * (logs > 0 ? logs : 0.0);
                 const double grown = onset * begin + slope * (1 + more_slope * ridge) * growth;
                 const double most = largest * (1 + more_largest * ridge);

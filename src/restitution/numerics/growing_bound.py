@@ -22,6 +22,7 @@ def growing_bound(
     smooth: tuple[Array, Array],
     shape: tuple[Array, Array],
     depths: tuple[float, float],
+    harder: Array,
     constants: Constants,
     of_ridge: OfRidge,
     out: Array,
@@ -31,7 +32,8 @@ def growing_bound(
     With f = δ₂/δ, m = p/√f [f(δ − h)/(fδ − h)]^s, s = max(1 − (H √f/p)^1.5, 0) and q = e s; both
     ln and q are 0 where p, the `pressure`, is 0. m₁ is m₀ times 1 + q times the first value of
     `of_ridge`. `smooth` holds a column and a row whose sum is H² (0 where negative), `shape` h and
-    e, `depths` δ and δ₂.
+    e, `depths` δ and δ₂. ln is smaller by
+    `harder`, the logarithm of the ratio of a local strength to that of the `constants`.
     """
     depth, deeper = depths
     factor, (crest_gap, elongation) = deeper / depth, shape
@@ -42,6 +44,7 @@ def growing_bound(
     ridge = elongation[nodes] * apart
     grown = np.log(value / (constants[0] * (1 + of_ridge[0] * ridge)))
     grown += apart * np.log(factor * np.maximum(depth - gap, _SMALLEST) / (deeper - gap))
+    grown -= harder[nodes]
     out[...] = bound_of(np.zeros(1), np.zeros(1), constants, of_ridge)
     out[nodes] = bound_of(np.maximum(grown, 0), ridge, constants, of_ridge)
 

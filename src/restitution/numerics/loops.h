@@ -8,6 +8,7 @@
 #include "multipoles.h"
 #include "newton.h"
 #include "relief.h"
+#include "contours.h"
 #include "growing_bound.h"
 #include "quadratic/fused_ops.h"
 #include "quadratic/grid_transfer.h"
@@ -29,5 +30,6 @@ inline void define_loops(py::module_& module) {
     define_lennard_jones(module);
     define_diffusion(module);
     define_relief(module);
+    define_contours(module);
     define_growing_bound(module);
 }

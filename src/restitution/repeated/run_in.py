@@ -23,8 +23,7 @@ from restitution.contact.contact import Contact
 from restitution.contact.models import COMPANION
 from restitution.contact.patch.law import law_of_patches
 from restitution.contact.path import unloading_path
-from restitution.contact.plasticity.cavity import ExpandingCavity
-from restitution.contact.plasticity.remembered import RememberedCavity
+from restitution.contact.plasticity.remembered import remembering
 from restitution.contact.prescribed.velocity import mass_in_impact, solve_at_velocity
 from restitution.contact.state import State
 from restitution.errors import CaseError, DomainError
@@ -96,7 +95,7 @@ class RunIn:
         seed: int = 0,
     ) -> None:
         _check(contact, other, place)
-        remembers = isinstance(contact.plasticity, ExpandingCavity)
+        remembers = contact.plasticity.grows
         smooth = np.zeros(contact.grid.nodes)
         self._origins = [
             {"source": "smooth"} if surface is None else surface.provenance
@@ -279,11 +278,9 @@ class RunIn:
         seen = list(zip(self._bodies, parts, strict=True))
         height = sum((body.height[part] for body, part in seen), np.zeros(width))
         model = self._contact.plasticity
-        if isinstance(model, ExpandingCavity):
+        if model.grows:
             borne = [body.borne[part] for body, part in seen if body.yields]
-            model = RememberedCavity(
-                model.yield_strength, model.tangent_modulus, np.minimum.reduce(borne)
-            )
+            model = remembering(model, np.minimum.reduce(borne))
         companion = self._contact.surface.provenance.get(COMPANION, "")
         origin = {"source": "repeated impacts", COMPANION: companion}
         surface = Surface(freeze(height), Grid(width, spacing), origin)
@@ -301,7 +298,8 @@ class RunIn:
             for body, centre in zip(self._bodies, at, strict=True)
             if body.yields
         ]
-        soft = [body.borne[part] <= bound for body, part in worn]
+        alike = end.contact.plasticity.alike
+        soft = [body.borne[part] <= alike * bound for body, part in worn]
         share = given / np.sum(soft, axis=0)
         for (body, part), softer in zip(worn, soft, strict=True):
             body.height[part] -= np.where(softer, share, 0.0)

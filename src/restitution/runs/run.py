@@ -52,6 +52,7 @@ from restitution.runs.result_warnings import (
     velocities_missed,
 )
 from restitution.runs.run_in import require_run_in, run_in
+from restitution.runs.size_effect import left_out
 from restitution.runs.smooth import smooth_curve
 from restitution.runs.two_scales import patch_curve, solve_patches, told
 from restitution.surfaces import describe
@@ -143,6 +144,10 @@ def run_case(
             finally:
                 run.band_errors = budget.band
                 out.put_curve(budget.points)
+            if run.deepest is not None:
+                with suppress(RestitutionError):  # the companion curve cannot be computed
+                    if finding := left_out(case, folder, out.curve, run.deepest):
+                        run.warn(finding.text())
         if is_oblique(case) and out.curve.points:
             oblique, missing = oblique_points(case, contact.surface, out)
             out.put_oblique(oblique)
@@ -237,6 +242,7 @@ def _check(state: State, back: Sequence[State], collision: Collision) -> dict[st
 
 def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> dict[str, Any]:
     points = out.curve.points
+    one_pressure = contact.first_yield_pressure == contact.hardness
     return {
         **run.head(case),
         "depths_asked": len(case.depths()),
@@ -251,11 +257,12 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> d
             "refine": case.grid.refine,
             "yield_pressure": case.yielding().source,
             "yields": contact.yields or "unknown",
+            **({"size_effect_m": size} if (size := case.yielding().size_effect) else {}),
         },
         "materials": _materials(case),
         "conventions": {
             **CONVENTIONS,
-            "yield_pressure": FULL_PRESSURE if contact.plasticity.grows else YIELD_PRESSURE,
+            "yield_pressure": YIELD_PRESSURE if one_pressure else FULL_PRESSURE,
         },
         "derived": derived_quantities(case, contact),
         "sticking": summary_of(run.sticking),

@@ -407,6 +407,26 @@ class AdhesionUnresolved(Finding):
         )
 
 
+@dataclass(frozen=True)
+class PatchesBelowSizeEffect(Finding):
+    material: str
+    length: float  # h*
+    depth: float  # of the Berkovich indent that is as sharp as the median of what yields
+    velocity: float  # at which COR changes most; NaN without density
+    restitution: float
+    harder: float  # COR with the size effect
+
+    def text(self, prescribed: str = "indentation") -> str:
+        at = f" at {quantity(self.velocity, 'm/s')}" if self.velocity > 0 else ""
+        return (
+            f"the asperities that yield are as sharp as Berkovich indents of "
+            f"{quantity(self.depth, 'm')}, and {self.material} is harder below h* = "
+            f"{quantity(self.length, 'm')}: COR would be about {self.harder:.2g} instead of "
+            f'{self.restitution:.2g}{at}; set interface.size_effect = "{_um(self.length)}", or '
+            '"0 um" without this effect'
+        )
+
+
 def _um(length: float) -> str:
     return f"{1e6 * length:.3g} um"
 

@@ -14,7 +14,7 @@ stress replaces the factor Y; its strain is the increase of 0.2 a/R since first 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import cast
 
 import numpy as np
@@ -23,13 +23,18 @@ from restitution.arguments import typed
 from restitution.contact.bodies import Pair
 from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import elastic_pressure
-from restitution.contact.models import Load, Plasticity, set_field
+from restitution.contact.models import set_field
 from restitution.contact.plasticity.bound import ConstantBound
+from restitution.contact.plasticity.increments import ChangingBound
+from restitution.contact.plasticity.size_effect import (
+    SizedBound,
+    strengthening_at,
+    strengthening_of_waves,
+)
 from restitution.contact.state import Array, State
 from restitution.display import quantity
 from restitution.errors import CaseError
-from restitution.numerics.box import Box, shape_of
-from restitution.numerics.expressions import dot
+from restitution.numerics.box import Box
 from restitution.numerics.growing_bound import bound_of, growing_bound
 from restitution.numerics.read_only import freeze
 from restitution.theory import Hertz, yield_coefficient
@@ -53,17 +58,6 @@ _RESIDUAL_FACTOR, _LARGEST_RESIDUAL = 1.5e4, 1.5e-4
 _PEAK = 1.5  # largest pressure between elastic paraboloids divided by their mean pressure (Hertz)
 _TABOR = 0.2  # representative strain divided by a/R (contact radius a, radius R of the sphere)
 
-# In each step, the pressure bound of a node grows. The error of the plastic work is a fraction of
-# this growth times the plastic displacement of the step. The fraction is _RULE_ERROR for nodes that
-# had yielded before the step, and _NEW_ERROR for nodes that begin to yield in the step. Both
-# fractions come from a comparison with steps that are 11 times finer. At nodes that begin to yield,
-# the mean of the bound during yielding is the bound before the step plus _NEW times the growth.
-_RULE_ERROR, _NEW, _NEW_ERROR = 0.1, 0.8, 0.25
-# The plastic work is a sum over depths. The first depth is _SHALLOW times the indentation, and each
-# further depth is at most _RATIO times the one before, because the error of a step holds up to this
-# ratio.
-_RATIO, _SHALLOW = 1.42, 0.2
-
 # Values of the steepness ψ = E* S/Y of the asperities (rms slope S), and the largest relative
 # difference of COR from finite elements (docs/validation.md) at each of these values.
 _STEEPNESS, _GROWING = (0.0, 4.0, 6.0), (0.03, 0.035, 0.045)
@@ -73,12 +67,13 @@ _NEAR_ONE = (0.94, 0.98, 1.0), (1.0, 0.5, 0.2)
 
 @typed
 @dataclass(frozen=True)
-class ExpandingCavity(Plasticity):
+class ExpandingCavity(ChangingBound):
     """The pressure bound grows with deformation, as in an expanding cavity.
 
     Attributes:
         yield_strength: Yield strength Y of a tensile test (Pa).
         tangent_modulus: Slope of the stress-strain curve of a tensile test after yield (Pa).
+        size_effect: Depth h* (m) of the size effect, as of `SizedBound`; 0 without.
 
     Raises:
         CaseError: A value is impossible.
@@ -89,15 +84,16 @@ class ExpandingCavity(Plasticity):
 
     yield_strength: float
     tangent_modulus: float = 0.0
+    size_effect: float = 0.0
 
     label = "expanding-cavity"
-    grows = True
-    for_periodic = False
     strengths = ("yield_strength",)
 
     def __post_init__(self) -> None:
         set_field(self, "yield_strength", "Pa")
         object.__setattr__(self, "tangent_modulus", float(self.tangent_modulus))
+        if self.size_effect != 0:
+            set_field(self, "size_effect", "m")
 
     def check(self, pair: Pair) -> None:
         softest = min(body.youngs_modulus for body in (pair.first, pair.second))
@@ -112,7 +108,8 @@ class ExpandingCavity(Plasticity):
         return FULL_CONSTRAINT * self.yield_strength
 
     def describe(self) -> str:
-        return f"yield strength {quantity(self.yield_strength, 'Pa')} ({self.label})"
+        size = f", size effect h* {quantity(self.size_effect, 'm')}" if self.size_effect else ""
+        return f"yield strength {quantity(self.yield_strength, 'Pa')} ({self.label}){size}"
 
     def first_yield_pressure(self, pair: Pair) -> float:
         """Largest pressure at which smooth bodies stay elastic (Pa).
@@ -136,6 +133,13 @@ class ExpandingCavity(Plasticity):
     ) -> tuple[Array | float, int]:
         return yield_bound(contact, max(indentation, 0.0), residual)
 
+    def bound_after(
+        self, state: State, indentation: float, residual: float
+    ) -> tuple[Array | float, int]:
+        if self.size_effect and indentation > state.indentation:
+            return self.bound(state.contact, indentation, residual)  # patches that grow soften
+        return super().bound_after(state, indentation, residual)
+
     def bound_at(self, pair: Pair, measure: Array, ridge: Array | float = 0.0) -> Array:
         """Bound (Pa) where the value m of the module docstring is `measure` (Pa).
 
@@ -150,51 +154,9 @@ class ExpandingCavity(Plasticity):
         strain = _TABOR * math.pi / 2 * onset / pair.contact_modulus  # at first yield
         return onset, GROWTH * Y, LARGEST * Y, self.hardening_modulus(pair) * strain / Y
 
-    def work(self, before: State | None, after: State) -> tuple[float, float]:
-        """Plastic work (J) of a step to at most 1.42 times the depth, and its error (J).
-
-        Where nodes had yielded before, the plastic displacement is taken as linear in the
-        indentation δ and the bound as linear in ln δ. The work per area of the displacement Δu is
-        then Δu [b₁ + (b₂ − b₁) (δ₂/(δ₂ − δ₁) − 1/ln(δ₂/δ₁))].
-        """
-        contact, box, ratio, on = after.contact, after.box, math.inf, 0.0
-        given, bound = after.plastic_displacement[box], _on(after.bound, box)
-        begun, old = _on(contact.first_yield_pressure, box), None
-        if before is not None:
-            begun, old = _on(before.bound, box), before.plastic_displacement[box]
-            given = given - old
-            if before.indentation > 0:
-                ratio = after.indentation / before.indentation
-        whole = dot(given, begun)
-        new = dot(given, bound) - whole
-        if old is not None:
-            given *= old > 0
-            on = dot(given, bound) - dot(given, begun)
-            new -= on
-        share = ratio / (ratio - 1) - 1 / math.log(ratio) if 1 < ratio < math.inf else 0.5
-        work, error = share * on + _NEW * new, _RULE_ERROR * abs(on) + _NEW_ERROR * abs(new)
-        return (whole + work) * contact.grid.cell_area, error * contact.grid.cell_area
-
-    def with_loading_work(self, state: State, start: State | None, load: Load) -> State:
-        contact, indentation = state.contact, state.indentation
-        if not state.plastic_displacement[state.box].any():
-            return state
-        first = _SHALLOW * indentation if start is None else start.indentation
-        steps = max(1, math.ceil(math.log(indentation / first) / math.log(_RATIO) - 1e-9))
-        depths = first * (indentation / first) ** (np.arange(steps) / steps)
-        work, error, convolutions, before = 0.0, 0.0, 0, start
-        if start is not None:
-            work, error, depths = start.plastic_work, start.work_error, depths[1:]
-        for depth in (*map(float, depths), indentation):
-            now = state if depth == indentation else load(contact, depth, None)
-            convolutions += now.convolutions
-            increment, increment_error = self.work(before, now)
-            work, error, before = work + increment, error + increment_error, now
-        return replace(state, plastic_work=work, work_error=error, convolutions=convolutions)
-
-    def of_asperities(self, pair: Pair, elastic_pressure: float) -> ConstantBound:
-        largest = np.asarray(_PEAK * elastic_pressure)
-        return ConstantBound(float(self.bound_at(pair, largest)))
+    def of_asperities(self, pair: Pair, elastic_pressure: float) -> ConstantBound | SizedBound:
+        bound = float(self.bound_at(pair, np.asarray(_PEAK * elastic_pressure)))
+        return SizedBound(bound, self.size_effect) if self.size_effect else ConstantBound(bound)
 
     def bound_of_waves(
         self, contact: Contact, depth: float, measure: Array, nominal: float
@@ -203,8 +165,9 @@ class ExpandingCavity(Plasticity):
         separate = 1 - merged * np.sqrt(merged)
         gap = contact.crest_gap
         ratio = _DEPTH_FACTOR * np.maximum(depth - gap, 0) / (_DEPTH_FACTOR * depth - gap)
-        measure = measure * ratio**separate
-        return self.bound_at(contact.pair, measure, contact.elongation * separate)
+        harder = strengthening_of_waves(contact, self.size_effect, math.sqrt(2) * measure)
+        measure = measure * ratio**separate / harder
+        return harder * self.bound_at(contact.pair, measure, contact.elongation * separate)
 
     def smooth_bounds(self, pair: Pair, count: int) -> tuple[Array, Array]:
         first = self.first_yield_pressure(pair)
@@ -220,21 +183,30 @@ class ExpandingCavity(Plasticity):
 
 
 def yield_bound(contact: Contact, indentation: float, residual: float) -> tuple[Array, int]:
+    model = cast(ExpandingCavity, contact.plasticity)
     bound = np.full(contact.grid.nodes, contact.first_yield_pressure)
     tolerance = min(_RESIDUAL_FACTOR * residual, _LARGEST_RESIDUAL)
     pressure, box, convolutions = elastic_pressure(contact, _DEPTH_FACTOR * indentation, tolerance)
     if pressure.size == 0:
         return freeze(bound), convolutions
     force = float(pressure.sum(dtype=np.float64)) * contact.grid.cell_area
+    harder: Array | float = 1.0
+    logarithms = np.broadcast_to(np.zeros(pressure.shape[1]), pressure.shape)
+    if model.size_effect:
+        harder, count = strengthening_at(contact, indentation, model.size_effect)
+        convolutions += count
+        logarithms = np.log(np.broadcast_to(harder, bound.shape)[box])
     growing_bound(
         pressure,
         _smooth_squares(contact, box, force),
         (contact.crest_gap[box], contact.elongation[box]),
         (indentation, _DEPTH_FACTOR * indentation),
-        cast(ExpandingCavity, contact.plasticity)._constants(contact.pair),
+        logarithms,
+        model._constants(contact.pair),
         _OF_RIDGE,
         bound[box],
     )
+    bound *= harder
     return freeze(bound), convolutions
 
 
@@ -248,10 +220,3 @@ def _smooth_squares(contact: Contact, box: Box, force: float) -> tuple[Array, Ar
     scale = (2 * E / (math.pi * R)) ** 2
     depth = Hertz(R, E).indentation(force)
     return scale * (R * depth - x[:, None] ** 2), -scale * y[None, :] ** 2
-
-
-def _on(bound: Array | float, box: Box) -> Array:
-    if isinstance(bound, np.ndarray):
-        return bound[box]
-    shape = shape_of(box)
-    return np.broadcast_to(np.full(shape[1], bound), shape)  # rows, as compiled loops need them

@@ -53,6 +53,11 @@ def solve_at_pressure(contact: Contact, pressure: float, *, residual: float = RE
             "contact: the bodies attract each other, so the pressure jumps on approach; prescribe "
             "the indentation"
         )
+    if contact.plasticity.grows:
+        raise CaseError(
+            "contact: the yield pressure depends on the indentation (size effect); prescribe the "
+            "indentation"
+        )
     if not 0 < pressure < math.inf:
         raise CaseError(f"pressure: {pressure} Pa is not positive")
     limit = contact.hardness

@@ -1,0 +1,159 @@
+"""Small contacts are harder: geometrically necessary dislocations (docs/size-effect.md).
+
+W. D. Nix, H. Gao, J. Mech. Phys. Solids 46 (1998) 411–425: H = H₀ √(1 + h*/h) for a Berkovich
+indenter. The density of dislocations is (3π/4) p̄/(E* a b), with the mean pressure p̄ of a contact
+patch of area πa² between elastic bodies at √2 times the indentation, and the Burgers vector b. This
+is 1/(bR) for a sphere and, within 3 %, 3 tan²θ/(2bh) for a cone and 3h/(ba²) for a flat punch, as
+in J. G. Swadener, E. P. George, G. M. Pharr, J. Mech. Phys. Solids 50 (2002) 681–694.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from restitution.arguments import typed
+from restitution.contact.contact import Contact
+from restitution.contact.equilibrium import elastic_pressure, solve_nonadhesive
+from restitution.contact.models import set_field
+from restitution.contact.plasticity.bound import ConstantBound
+from restitution.contact.plasticity.increments import ChangingBound
+from restitution.contact.state import Array, State
+from restitution.display import quantity
+from restitution.numerics.contours import contour_means
+from restitution.numerics.read_only import freeze
+
+BERKOVICH = 0.358  # tangent of the angle between the surface and a cone that equals the indenter
+_DEEPER = math.sqrt(2)  # the elastic pressure is computed at this multiple of the indentation
+# Area of a Hertz contact from the entropy of its pressure, over its area: (2/3) e^(1/3).
+_OF_HERTZ = 2 / 3 * math.exp(1 / 3)
+_RESIDUAL = 1.5e-4  # of the elastic pressure
+_INCOMPLETE = 0.99  # largest mean indentation of elastic periodic bodies, over the mean gap
+
+
+def dislocation_density(contact: Contact, pressure: Array, *, periodic: bool = False) -> Array:
+    """Density of dislocations times the Burgers vector (1/m) at each node, 0 without pressure.
+
+    `pressure` (Pa) is that between elastic bodies at √2 times the indentation. Where patches merge,
+    the density is the mean over the contours of the pressure that enclose the node.
+    """
+    density = np.empty(pressure.shape)
+    contour_means(np.ascontiguousarray(pressure, dtype=float), periodic, density)
+    E, cell = contact.pair.contact_modulus, contact.grid.cell_area
+    density *= 0.75 * (math.pi * _OF_HERTZ) ** 1.5 / (E * math.sqrt(cell))
+    return density
+
+
+def strengthening(length: float, density: Array) -> Array:
+    """Ratio √(1 + h*/h) of hardness to bulk hardness, for h* = `length` (m)."""
+    return np.asarray(np.sqrt(1 + length * density / (1.5 * BERKOVICH**2)))
+
+
+def _spread(density: Array) -> Array:
+    """Give nodes without density that of the nearest node with one."""
+    from scipy.ndimage import distance_transform_edt
+
+    none = density == 0
+    if not none.any():
+        return density
+    nearest = distance_transform_edt(none, return_distances=False, return_indices=True)
+    return np.asarray(density[tuple(nearest)])
+
+
+def strengthening_of_waves(contact: Contact, length: float, pressure: Array) -> Array | float:
+    """`strengthening_at` on a periodic patch of short waves.
+
+    `pressure` (Pa) is that between elastic bodies at any larger indentation: asperities are round.
+    """
+    if not length or not pressure.any():
+        return 1.0
+    density = dislocation_density(contact, pressure, periodic=True)
+    return strengthening(length, _spread(density))
+
+
+def strengthening_at(
+    contact: Contact, indentation: float, length: float
+) -> tuple[Array | float, int]:
+    """`strengthening` on the whole grid, and the number of convolutions that it took.
+
+    Nodes without pressure have the value of the nearest patch.
+    """
+    deep = _DEEPER * indentation
+    if contact.periodic:
+        deep = min(deep, _INCOMPLETE * float(contact.gap.mean()))
+        elastic = solve_nonadhesive(contact, deep, math.inf, _RESIDUAL)
+        pressure, box, count = elastic.box_pressure, elastic.box, elastic.convolutions
+    else:
+        pressure, box, count = elastic_pressure(contact, deep, _RESIDUAL)
+    if not pressure.any():
+        return 1.0, count
+    density = dislocation_density(contact, pressure, periodic=contact.periodic)
+    factor = strengthening(length, _spread(density))
+    around = [(side.start, n - side.stop) for side, n in zip(box, contact.grid.nodes, strict=True)]
+    return np.pad(factor, around, mode="edge"), count
+
+
+@typed
+@dataclass(frozen=True)
+class SizedBound(ChangingBound):
+    """A pressure bound that is constant in large contacts, and higher in small ones.
+
+    Attributes:
+        yield_pressure: Pressure (Pa) at which the surface yields in large contacts.
+        size_effect: Depth h* (m) at which a Berkovich indent is √2 times as hard; half of it if
+            both bodies yield alike, because then each has half of the imprint.
+
+    Raises:
+        CaseError: A value is not positive.
+
+    Source:
+        W. D. Nix, H. Gao, J. Mech. Phys. Solids 46 (1998) 411–425.
+    """
+
+    yield_pressure: float
+    size_effect: float
+
+    label = "equilibrium"
+    for_periodic = True
+    alike = 1.1  # as bodies of nearly the same strength (case/interface)
+    strengths = ("yield_pressure",)
+
+    def __post_init__(self) -> None:
+        set_field(self, "yield_pressure", "Pa")
+        set_field(self, "size_effect", "m")
+
+    @property
+    def hardness(self) -> float:
+        return self.yield_pressure
+
+    def describe(self) -> str:
+        pressure, length = quantity(self.yield_pressure, "Pa"), quantity(self.size_effect, "m")
+        return f"yield pressure {pressure} ({self.label}), size effect h* {length}"
+
+    def bound(
+        self, contact: Contact, indentation: float, residual: float
+    ) -> tuple[Array | float, int]:
+        factor, convolutions = strengthening_at(contact, max(indentation, 0.0), self.size_effect)
+        bound = np.broadcast_to(self.yield_pressure * factor, contact.grid.nodes)
+        return freeze(np.ascontiguousarray(bound)), convolutions
+
+    def begun(self, after: State) -> Array | float:
+        return after.bound
+
+    def bound_after(
+        self, state: State, indentation: float, residual: float
+    ) -> tuple[Array | float, int]:
+        if indentation <= state.indentation:
+            return state.bound, 0
+        return self.bound(state.contact, indentation, residual)
+
+    def bound_of_waves(
+        self, contact: Contact, depth: float, measure: Array, nominal: float
+    ) -> Array:
+        waves = strengthening_of_waves(contact, self.size_effect, math.sqrt(2) * measure)
+        return np.broadcast_to(self.yield_pressure * waves, measure.shape)
+
+    def difference(self, contact: Contact, restitution: float) -> float:
+        return ConstantBound(self.yield_pressure).difference(contact, restitution)

@@ -1,0 +1,229 @@
+"""Small contacts are harder: cones, spheres, flat punches, patches that merge, rough contacts."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from restitution import (
+    Body,
+    ConstantBound,
+    Contact,
+    ExpandingCavity,
+    Grid,
+    Pair,
+    SizedBound,
+    Surface,
+    collide,
+    generate_surface,
+    loading_path,
+    smooth,
+    solve,
+    step,
+    unloading_path,
+)
+from restitution.contact.plasticity.size_effect import BERKOVICH, dislocation_density
+from restitution.errors import CaseError
+from tolerance import approx
+
+H0, STIFF = 1e9, 1e12
+RATIOS = (0.1, 1.0, 10.0)
+
+
+def indenter(depth_of, half_width, nodes, model, radius=math.inf):
+    """A contact whose gap is `depth_of` the distance from the middle of the grid."""
+    spacing = 2 * half_width / nodes
+    grid = Grid((nodes, nodes), (spacing, spacing))
+    r = np.hypot(grid.x[:, None], grid.y[None, :])
+    R = min(radius, 1e3 * half_width)
+    surface = Surface(r**2 / (2 * R) - depth_of(r), grid)
+    return Contact(Pair(Body(R, 1e6 * STIFF, 0.0), Body(math.inf, STIFF, 0.0)), surface, model)
+
+
+def cone(tangent, depth, model, nodes=64):
+    return indenter(lambda r: tangent * r, 1.3 * depth / tangent, nodes, model)
+
+
+@pytest.mark.parametrize("tangent", [BERKOVICH, 0.15])
+@pytest.mark.parametrize("ratio", RATIOS)
+def test_a_cone_follows_nix_and_gao(tangent, ratio):
+    """The density of dislocations, and so h*, is proportional to tan²θ."""
+    depth = 0.2e-6
+    length = depth / ratio
+    contact = cone(tangent, depth, SizedBound(H0, length * (BERKOVICH / tangent) ** 2))
+    state = solve(contact, depth)
+    sunk = tangent * math.sqrt(state.contact_area / math.pi)
+    law = H0 * math.sqrt(1 + length / sunk)
+    assert state.force / state.contact_area == approx(law, rel=0.03)
+
+
+@pytest.mark.parametrize("ratio", RATIOS)
+def test_the_work_on_a_cone_is_the_integral_of_the_law(ratio):
+    depth = 0.2e-6
+    length = depth / ratio
+
+    def force(h):
+        return H0 * math.sqrt(1 + length / h) * math.pi * (h / BERKOVICH) ** 2
+
+    state = solve(cone(BERKOVICH, depth, SizedBound(H0, length)), depth)
+    assert state.loading_work == approx(quad(force, 0, depth)[0], rel=0.025)
+
+
+@pytest.mark.parametrize("ratio", RATIOS)
+@pytest.mark.parametrize("depth", [5e-9, 20e-9])
+def test_a_sphere_is_as_hard_at_every_depth(ratio, depth):
+    """H = H₀ √(1 + R*/R) with R* = 2 h*/(3 tan²θ) (Swadener, George and Pharr 2002)."""
+    R = 1e-6
+    length = 1.5 * BERKOVICH**2 * R / ratio
+    half = 1.3 * math.sqrt(2 * R * depth)
+    contact = indenter(lambda r: r**2 / (2 * R), half, 64, SizedBound(H0, length), R)
+    state = solve(contact, depth)
+    law = H0 * math.sqrt(1 + 1 / ratio)
+    assert state.force / state.contact_area == approx(law, rel=0.05)
+
+
+def test_a_flat_punch_hardens_with_its_depth():
+    """The density is 3h/(ba²)."""
+    a, densities = 1e-6, []
+    for depth in (0.05e-6, 0.2e-6):
+        contact = indenter(lambda r: np.where(r <= a, 0, 10 * a), 1.5 * a, 96, SizedBound(H0, a))
+        hardness = solve(contact, depth).force / (math.pi * a**2)
+        densities.append(((hardness / H0) ** 2 - 1) * 1.5 * BERKOVICH**2 / a)
+        law = H0 * math.sqrt(1 + 3 * depth / a / (1.5 * BERKOVICH**2))
+        assert hardness == approx(law, rel=0.05)
+    assert densities[1] / densities[0] == approx(4, rel=0.1)
+
+
+def bumps(distance, model, nodes=80):
+    """Two spherical bumps whose middles are `distance` (m) apart."""
+    grid = Grid((nodes, nodes), (10e-9, 10e-9))
+    x, y = grid.x[:, None], grid.y[None, :]
+    height = np.maximum.reduce(
+        [-((x - sign * distance / 2) ** 2 + y**2) / 2e-6 for sign in (-1, 1)]
+    )
+    body = Body(1e-3, STIFF, 0.0)
+    return Contact(Pair(body, body), Surface(height, grid), model)
+
+
+def test_patches_that_merge_soften_without_a_jump():
+    """Their own density at first touch; that of one patch when the dip between them is gone."""
+    bound = []
+    for distance in np.linspace(0, 0.3e-6, 61):
+        contact = bumps(float(distance), SizedBound(H0, 0.4e-6))
+        limit, _ = contact.plasticity.bound(contact, 5e-9, 1e-8)
+        bound.append(float(limit[contact.gap < 5e-9].mean()))
+    single = H0 * math.sqrt(1 + 0.4e-6 / (1.5 * BERKOVICH**2 * 1e-6))
+    assert bound[0] == approx(single, rel=0.02)
+    assert bound[-1] == approx(single, rel=0.02)
+    assert min(bound) < 0.97 * single
+    assert np.abs(np.diff(bound)).max() < 0.03 * single
+
+
+def rough(model, seed=3, scale=1.0, nodes=48, rms=10e-9):
+    h = 0.2e-6 * scale
+    grid = Grid((nodes, nodes), (h, h))
+    surface = generate_surface(
+        grid, kind="gaussian", rms=rms * scale, correlation_length=8 * h, seed=seed
+    )
+    body = Body(500e-6 * scale, 210e9, 0.3, 7850.0)
+    return Contact(Pair(body, body), surface, model)
+
+
+def models(length):
+    constant = SizedBound(0.8e9, length) if length else ConstantBound(0.8e9)
+    return constant, ExpandingCavity(0.3e9, size_effect=length)
+
+
+DEEP = 30e-9
+
+
+def test_without_length_the_models_are_those_without_size_effect():
+    tiny = [solve(rough(model), DEEP) for model in models(1e-30)]
+    none = [solve(rough(model), DEEP) for model in models(0.0)]
+    for one, other in zip(tiny, none, strict=True):
+        assert np.array_equal(one.box_pressure, other.box_pressure)
+        assert np.array_equal(one.plastic_displacement, other.plastic_displacement)
+        assert one.stored_energy == other.stored_energy
+    assert tiny[1].plastic_work == none[1].plastic_work
+    assert tiny[0].plastic_work == approx(none[0].plastic_work, rel=1e-9)
+    assert tiny[0].work_error == approx(0, abs=1e-9 * tiny[0].plastic_work)
+
+
+@pytest.mark.parametrize("kind", [0, 1])
+def test_restitution_rises_with_the_length(kind):
+    e = [
+        collide(solve(rough(models(length)[kind]), DEEP)).restitution
+        for length in (0.0, 0.05e-6, 0.4e-6, 3e-6)
+    ]
+    assert np.all(np.diff(e) > 1e-4)
+
+
+@pytest.mark.parametrize("kind", [0, 1])
+@pytest.mark.parametrize("scale", [1e-3, 7.0])
+def test_lengths_scale_out(kind, scale):
+    e = [
+        collide(solve(rough(models(0.4e-6 * s)[kind], scale=s), DEEP * s)).restitution
+        for s in (1.0, scale)
+    ]
+    assert e[1] == approx(e[0], rel=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(1, 4))
+@pytest.mark.parametrize("kind", [0, 1])
+def test_the_energies_add_up(kind, seed):
+    """The force over the depth gives the loading work, and unloading the stored energy."""
+    contact = rough(models(0.4e-6)[kind], seed=seed)
+    depths = DEEP * np.geomspace(0.05, 1, 40)
+    states = list(loading_path(contact, depths))
+    force = np.array([state.force for state in states])
+    power = np.diff(np.log(force)) / np.diff(np.log(depths))
+    outside = states[0].loading_work + float(np.sum(np.diff(force * depths) / (power + 1)))
+    deepest = solve(contact, DEEP)
+    assert deepest.loading_work == approx(outside, rel=0.004)
+    assert deepest.work_error < 0.02 * outside
+    assert np.all(np.diff(force) > 0)
+    assert np.all(np.diff([state.plastic_work for state in states]) >= 0)
+    assert np.all(np.diff([state.plastic_displacement for state in states], axis=0) >= 0)
+    path = list(unloading_path(deepest))
+    at, F = (np.array([getattr(s, name) for s in path]) for name in ("indentation", "force"))
+    returned = -float(np.sum(0.5 * (F[1:] + F[:-1]) * np.diff(at)))
+    assert returned == approx(deepest.stored_energy, rel=0.005)
+
+
+@pytest.mark.parametrize("kind", [0, 1])
+def test_deformed_bodies_load_as_undeformed_ones(kind):
+    contact = rough(models(0.4e-6)[kind])
+    once = solve(contact, DEEP)
+    state = solve(contact, 0.3 * DEEP)
+    for depth in DEEP * np.linspace(0.4, 1, 5):
+        state = step(state, float(depth))
+    assert state.force == approx(once.force, rel=1e-6)
+    assert state.stored_energy == approx(once.stored_energy, rel=1e-6)
+    assert state.loading_work == approx(once.loading_work, rel=0.02)
+
+
+def test_nodes_without_patch_take_the_bound_of_the_nearest():
+    contact = rough(SizedBound(0.8e9, 0.4e-6))
+    limit, _ = contact.plasticity.bound(contact, DEEP, 1e-8)
+    assert limit.shape == contact.grid.nodes
+    assert limit.min() > 0.8e9
+    none, _ = contact.plasticity.bound(contact, 0.0, 1e-8)
+    assert np.all(none == 0.8e9)
+
+
+def test_density_of_hertz_is_its_curvature():
+    contact = replace(rough(SizedBound(0.8e9, 1e-6)), surface=smooth(Grid((80, 80), (2e-7, 2e-7))))
+    R, E, depth = contact.pair.radius, contact.pair.contact_modulus, 0.1e-6
+    x, y = contact.grid.x[:, None], contact.grid.y[None, :]
+    pressure = 2 * E / (math.pi * R) * np.sqrt(np.maximum(2 * depth * R - x**2 - y**2, 0))
+    density = dislocation_density(contact, pressure)
+    assert density.max() == approx(1 / R, rel=0.01)
+    assert density[pressure > 0].min() == approx(density.max(), rel=1e-9)
+
+
+@pytest.mark.parametrize("length", [-1e-6, math.nan, math.inf, 0.0])
+def test_impossible_lengths_are_refused(length):
+    with pytest.raises(CaseError, match=r"size_effect: .* is not positive and finite"):
+        SizedBound(1e9, length)
