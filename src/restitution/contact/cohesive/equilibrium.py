@@ -353,8 +353,9 @@ def _far(contact: Contact, indentation: float, box: Box) -> tuple[float, float]:
     force = energy = 0.0
     for part in outside:
         gap = np.maximum(contact.gap[part] + (z0 - indentation), 1.2 * z0)
-        force -= float(np.sum(law.traction(gap))) * grid.cell_area
-        energy += float(np.sum(law.energy(gap))) * grid.cell_area
+        potential, traction, _ = law.potential(gap)
+        force -= float(np.sum(traction)) * grid.cell_area
+        energy += float(np.sum(potential)) * grid.cell_area
     # Outside the grid, each body is replaced by its smooth mean surface (`Contact.mean_offset`).
     # Force and energy are integrated outside a circle that has the area of the grid.
     R, (wide, long) = contact.pair.radius, grid.size
