@@ -105,6 +105,18 @@ def test_the_mean_bound_of_a_patch_is_below_that_of_smooth_bodies(bounds):
     assert ratio[0] >= 1  # asperities yield later than smooth bodies at first yield
 
 
+def test_the_bulk_bears_more_than_a_patch_that_flows(two_scales):
+    """Strain of the long waves is larger than in a patch; late asperities do not delay the bulk."""
+    table = replace(two_scales, plasticity=GROWING).adhesion.table
+    flowing = float(table.pressure.values[0])
+    smooth = np.geomspace(0.5 * GROWING.first_yield_pressure(PAIR), 3.5e9, 30)
+    bound = table.bulk_bound(smooth)
+    assert np.all(bound <= smooth)
+    assert flowing < 0.9 * smooth[-1]
+    assert bound[-1] > 0.95 * smooth[-1]
+    assert np.all(np.diff(bound) > 0)
+
+
 def test_the_gap_is_the_inverse_of_the_pressure(two_scales):
     table = two_scales.adhesion.table
     for pressure in (1e6, 1e8, 2e9, 2.999e9):
