@@ -28,6 +28,7 @@ from restitution.contact.state import Array
 from restitution.errors import RestitutionError
 from restitution.numerics.grid import Grid
 from restitution.numerics.intervals import half_interval
+from restitution.runs.loss_errors import carried
 from restitution.surfaces import Surface, generate_surface
 from restitution.surfaces.refine import coarsen
 from restitution.surfaces.split import split
@@ -100,7 +101,7 @@ def resolved(direct: Contact) -> tuple[Contact, int]:
 
 
 def error_of(contact: Contact, coarser: Contact, here: Array, work: float, depth: float) -> Array:
-    """Error as that of a run: cells twice as large, other surfaces, and single patches."""
+    """Error as that of a run: larger cells, other surfaces, single patches, and sticking."""
     law = contact.adhesion
     alone = [replace(law, patches=(patch,)) for patch in law.patches]
     others = [replace(law, place=place) for place in range(1, SURFACES)]
@@ -114,7 +115,10 @@ def error_of(contact: Contact, coarser: Contact, here: Array, work: float, depth
         parts.append(half_interval(len(single)) * single.std(axis=0, ddof=1))
     half = half_interval(len(other)) * other.std(axis=0, ddof=1)
     parts.append(np.abs(here - other.mean(axis=0)) + half)
-    return np.sqrt(sum(part**2 for part in parts))
+    error = np.sqrt(sum(part**2 for part in parts))
+    ratio, change = 1 - here[1] / work, error[1] / work
+    error[2] = max(error[2], carried(np.array([ratio]), np.array([change]))[0])
+    return error
 
 
 def row_of(seed: int) -> dict[str, object]:

@@ -9,7 +9,7 @@ import pytest
 import restitution as rs
 from restitution.contact.cohesive.law import Cohesive
 from restitution.contact.loading import step
-from restitution.contact.patch import repulsion, stored
+from restitution.contact.patch import attraction, repulsion, stored
 from restitution.contact.patch.attraction import AttractionTable
 from restitution.contact.patch.blocks import (
     BlockLaw,
@@ -103,6 +103,18 @@ def test_the_mean_bound_of_a_patch_is_below_that_of_smooth_bodies(bounds):
     assert (np.diff(smooth) >= 0).all()
     assert 0.6 < ratio[-1] < 1
     assert ratio[0] >= 1  # asperities yield later than smooth bodies at first yield
+
+
+def test_the_bulk_bears_more_than_a_patch_that_flows(two_scales):
+    """Strain of the long waves is larger than in a patch; late asperities do not delay the bulk."""
+    table = replace(two_scales, plasticity=GROWING).adhesion.table
+    flowing = float(table.pressure.values[0])
+    smooth = np.geomspace(0.5 * GROWING.first_yield_pressure(PAIR), 3.5e9, 30)
+    bound = table.bulk_bound(smooth)
+    assert np.all(bound <= smooth)
+    assert flowing < 0.9 * smooth[-1]
+    assert bound[-1] > 0.95 * smooth[-1]
+    assert np.all(np.diff(bound) > 0)
 
 
 def test_the_gap_is_the_inverse_of_the_pressure(two_scales):
@@ -214,6 +226,20 @@ def test_the_law_of_a_flat_patch_is_that_of_half_spaces():
     np.testing.assert_allclose(traction, exact.traction(gap), rtol=0.03, atol=0.05 * W / Z0)
     assert table.equilibrium == approx(Z0, rel=5e-3)
     assert table.work == approx(W, rel=0.02)
+
+
+def test_a_patch_is_solved_once_for_blocks_of_all_sizes(monkeypatch):
+    monkeypatch.setattr(attraction, "kept", lambda *of: of[-1]())
+    patch, coarse = asperities(0.15e-9, 24), []
+    for cell in (3.6e-9, 7.2e-9):
+        grid = rs.Grid((8, 8), (cell, cell))
+        law = PatchAttraction((patch,), 14e-9, Cohesive(W))
+        coarse.append(law.of_contact(rs.Contact(FINE_PAIR, rs.smooth(grid))).curve(patch))
+        monkeypatch.setattr(attraction, "_loading", lambda _: pytest.fail("solved"))
+    fine, wide = (curve.blocks for curve in coarse)
+    assert fine.shape[1] == 2 * wide.shape[1]
+    for curve in coarse:
+        assert curve.blocks.mean(axis=(1, 2)) == approx(curve.pressure, rel=1e-6, abs=1.0)
 
 
 def test_an_attraction_is_the_derivative_of_its_energy():

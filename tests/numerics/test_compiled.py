@@ -19,6 +19,7 @@ from restitution.numerics.expressions import (
     redirect,
 )
 from restitution.numerics.growing_bound import growing_bound
+from restitution.numerics.node_tables import tabulated_potential
 from restitution.numerics.quadratic import fused_ops
 from restitution.numerics.quadratic.fused_ops import (
     as_rows,
@@ -397,3 +398,28 @@ def test_the_lennard_jones_law_is_that_of_the_expression(shape, seed):
     (_, expected), (_, compiled) = both(lennard_jones, gap, 0.05, 3e-10, *empty)
     for one, other in zip(expected[3:], compiled[3:], strict=True):
         assert_allclose(other, one, rtol=1e-12, atol=1e-14 * np.abs(one).max())
+
+
+@settings(deadline=None, max_examples=25)
+@given(shapes, seeds)
+def test_the_potential_of_tables_is_that_of_the_expression(shape, seed):
+    rng = np.random.default_rng(seed)
+    rows, cells = 3, 8
+    first, step = rng.uniform(-1, 0, shape), rng.uniform(0.1, 0.3, shape)
+    gap = first + step * rng.uniform(-3, 14, shape)  # below, in and beyond the table
+    row, middle = rng.integers(0, rows, shape), first - rng.uniform(0.1, 1, shape)
+    tables = rng.standard_normal((rows * cells, 5)), rng.standard_normal((rows, 3))
+    nodes = np.concatenate([first, step, middle])
+    (_, expected), (_, compiled) = both(
+        tabulated_potential, gap, row, nodes, *tables, np.empty_like(nodes)
+    )
+    for one, other in zip(np.split(expected[-1], 3), np.split(compiled[-1], 3), strict=True):
+        assert_allclose(other, one, rtol=1e-11, atol=1e-12 * np.abs(one).max())
+
+
+def test_a_node_without_a_row_is_refused():
+    nodes, row = np.ones((3, 1)), np.array([[3]])
+    with pytest.raises(IndexError):
+        tabulated_potential(
+            nodes[:1], row, nodes, np.ones((6, 5)), np.ones((3, 3)), np.ones((3, 1))
+        )

@@ -4,11 +4,14 @@ import math
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from restitution.case.case_file import parse_case
 from restitution.curve.work_curve import WorkCurve
+from restitution.errors import CaseError
 from restitution.runs.companion_curves import curve_of
 from restitution.runs.companions import Companions, ScaleCurves, coarser_contact
+from restitution.surfaces.refine import coarsen
 from tolerance import approx
 
 COHESIVE = """\
@@ -42,6 +45,17 @@ def test_other_curves_of_a_cohesive_contact_are_compared_at_the_same_impacts(tmp
     assert other.at(work) == approx(full.at(work), abs=0.01)
     assert other.ratio(work) == approx(full.ratio(work), abs=0.02)
     assert other.pull_off_at(work) == approx(full.pull_off_at(work), rel=0.08)
+
+
+def test_other_materials_may_need_finer_cells_than_a_companion_has(tmp_path):
+    contact = parse_case(COHESIVE.replace("3 nm", "2 nm")).contact(tmp_path)
+    coarse = coarser_contact(contact)
+    sticky = replace(coarse, adhesion=coarse.adhesion.with_work_of_adhesion(0.26))
+    assert coarse.adhesion.resolves_range(coarse)
+    assert not sticky.adhesion.resolves_range(sticky)
+    sticky.adhesion.require_fine_grid(sticky)
+    with pytest.raises(CaseError, match="too coarse"):
+        sticky.adhesion.require_fine_grid(replace(sticky, surface=coarsen(contact.surface)))
 
 
 def test_waves_that_are_not_short_beside_the_contact_have_an_error():

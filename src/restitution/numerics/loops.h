@@ -7,6 +7,7 @@
 #include "diffusion.h"
 #include "multipoles.h"
 #include "newton.h"
+#include "node_tables.h"
 #include "relief.h"
 #include "contours.h"
 #include "growing_bound.h"
@@ -28,6 +29,7 @@ inline void define_loops(py::module_& module) {
     define_for<double>(module);
     define_multipoles(module);
     define_lennard_jones(module);
+    define_node_tables(module);
     define_diffusion(module);
     define_relief(module);
     define_contours(module);

@@ -114,26 +114,44 @@ def curve_errors(
     *,
     scattered: bool,
 ) -> list[Array]:
-    """Errors of a quantity, `here` on the grid of the run, due to grid, surfaces and materials.
+    """Errors of a quantity, `here` on the grid of the run, due to grid, surfaces and materials."""
+    kinds = errors_by_kind(companions, quantity_of, here, scattered=scattered)
+    return [error for errors in kinds.values() for error in errors]
 
-    One error due to the grid, one due to scatter between surfaces (if `scattered` and the bodies
-    are rough), and one for each kind of library value with a spread.
+
+def errors_by_kind(
+    companions: Companions,
+    quantity_of: Callable[[WorkCurve], Array],
+    here: Array,
+    *,
+    scattered: bool,
+) -> dict[str, list[Array]]:
+    """Errors of a quantity, `here` on the grid of the run, by the names of those of COR.
+
+    One error due to the grid and one to patches, one due to scatter between surfaces (if
+    `scattered` and the bodies are rough), and one for each kind of library value with a spread.
     """
-    errors = [np.abs(here - quantity_of(companions.own))]
+    grid = [np.abs(here - quantity_of(companions.own))]
+    if scales := companions.scales():
+        grid.append(scales.error(quantity_of, companions.area_at_pull_off))
+    surfaces, materials = [], []
     own = quantity_of(companions.reference)
     if companions.case.roughness and scattered:
         values = np.array([own, *map(quantity_of, companions.others())])
         half = half_interval(len(values)) * values.std(axis=0, ddof=1)
-        errors.append(np.abs(own - values.mean(axis=0)) + half)
+        surfaces.append(np.abs(own - values.mean(axis=0)) + half)
     if spectra := companions.spectra():
-        errors.append(np.max([np.abs(quantity_of(curve) - own) for curve in spectra], axis=0))
-    if scales := companions.scales():
-        errors.append(scales.error(quantity_of, companions.area_at_pull_off))
+        changes = [np.abs(quantity_of(curve) - own) for curve in spectra]
+        surfaces.append(np.max(changes, axis=0))
     for ends in companions.material_ends():
         reference = quantity_of(companions.curve(companions.of_materials))
         low, high = (np.abs(quantity_of(companions.curve(end)) - reference) for end in ends)
-        errors.append(np.maximum(low, high))
-    return errors
+        materials.append(np.maximum(low, high))
+    return {
+        "discretisation_error": grid,
+        "surface_scatter": surfaces,
+        "material_error": materials,
+    }
 
 
 def in_words(known: Mapping[str, Any], points: Sequence[Point]) -> str:

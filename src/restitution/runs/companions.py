@@ -334,11 +334,9 @@ def coarser_contact(contact: Contact) -> Contact:
     coarser = coarsen(contact.surface)
     if contact.surface.provenance.get("source") == "smooth":
         coarser = smooth(coarser.grid)
-    new = replace(contact, surface=coarser)
-    if interface_of(new).resolves_range(new):
-        return new
-    coarser = replace(coarser, provenance={**coarser.provenance, COMPANION: True})
-    return replace(contact, surface=coarser)
+    # Bodies with other patches or materials may need finer cells.
+    marked = replace(coarser, provenance={**coarser.provenance, COMPANION: True})
+    return replace(contact, surface=marked)
 
 
 def with_deviations(case: Case, number: float) -> Case:

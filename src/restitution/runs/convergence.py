@@ -33,6 +33,7 @@ from restitution.runs.error_budget import (
     widened_error,
 )
 from restitution.runs.log import RunLog, Say, ignore
+from restitution.runs.loss_errors import with_sticking
 from restitution.runs.refinement import with_chosen_adhesion, with_chosen_grids
 from restitution.runs.run import run_case
 
@@ -148,6 +149,8 @@ def _spread_of(
         unseen = unseen_yield(companions, waves, impacts)
     work = array(impacts, "loading_work")
     errors = spread_errors(companions, work, log.progress, parts=log.material_parts)
+    errors = with_sticking({"discretisation_error": unseen} | errors, companions, impacts)
+    unseen = errors.pop("discretisation_error")
     return {
         number: _Spread(
             {name: float(values[k]) for name, values in errors.items()},

@@ -23,6 +23,7 @@ from restitution.numerics.intervals import half_interval
 from restitution.runs.attraction import with_pull_off_errors
 from restitution.runs.companions import SURFACES, Companions, ScaleCurves
 from restitution.runs.log import Say, ignore
+from restitution.runs.loss_errors import with_sticking
 from restitution.runs.material_advice import MaterialPart, advice, as_rows
 from restitution.runs.material_parts import material_parts
 from restitution.surfaces import Surface, rms_slope
@@ -254,6 +255,7 @@ class ErrorBudget:
         columns = {"discretisation_error": errors} | spread_errors(
             companions, work, self._progress, scattered=self._scattered, parts=self.parts
         )
+        columns = with_sticking(columns, companions, points, scattered=self._scattered)
         self.band += band.tolist()
         new = []
         for k, point in enumerate(points):

@@ -6,8 +6,10 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 from restitution.contact.cohesive.equilibrium import CohesiveState, law_of
 from restitution.contact.cohesive.loading import load_cohesive
@@ -18,6 +20,7 @@ from restitution.contact.patch.blocks import Shape, block_means
 from restitution.contact.patch.stored import bodies_in_words, is_kept, kept
 from restitution.contact.state import Array
 from restitution.errors import DomainError
+from restitution.numerics.convolution.cache import OperatorCache
 from restitution.numerics.tabulated import Tabulated
 
 # A patch is loaded up to this fraction of E*, or of the yield pressure if that is smaller, or until
@@ -87,18 +90,47 @@ def _models(contact: Contact, shape: Shape) -> object:
     return bodies_in_words(contact.pair), contact.plasticity, contact.adhesion, shape
 
 
+@dataclass(frozen=True, eq=False)
+class _Loading:
+    """States of a loading: rows of gap, pressure, work and loss, and pressures of all nodes."""
+
+    rows: Array
+    pressures: NDArray[np.float32]
+    jumps: int
+
+    @property
+    def nbytes(self) -> int:
+        return self.rows.nbytes + self.pressures.nbytes
+
+    @classmethod
+    def of(cls, contact: Contact) -> _Loading:
+        known = _recent.get(contact)
+        if known is not None:
+            return cast(_Loading, known)
+        area, z0 = math.prod(contact.grid.size), law_of(contact).equilibrium_separation
+        touch = float(contact.gap.mean()) + z0
+        rows, pressures, jumps = [], [], 0
+        for state in _loading(contact):
+            lost = state.plastic_work + state.adhesive_loss
+            work = state.potential_energy + lost
+            rows.append((touch - state.indentation, state.force / area, work / area, lost / area))
+            pressures.append(state.box_pressure.astype(np.float32))
+            jumps = state.jumps
+        loading = cls(np.array(rows), np.array(pressures), jumps)
+        _recent.put(contact, loading)
+        return loading
+
+
+# Grids with other cells, of a refined run and of its companions, divide the same patches into other
+# blocks.
+_recent = OperatorCache(max_bytes=2**27, max_items=16)
+
+
 def _columns(contact: Contact, shape: Shape) -> dict[str, Array]:
-    area, z0 = math.prod(contact.grid.size), law_of(contact).equilibrium_separation
-    touch = float(contact.gap.mean()) + z0
-    rows, blocks, jumps = [], [], 0
-    for state in _loading(contact):
-        lost = state.plastic_work + state.adhesive_loss
-        work = state.potential_energy + lost
-        rows.append((touch - state.indentation, state.force / area, work / area, lost / area))
-        blocks.append(block_means(state.box_pressure, shape))
-        jumps = state.jumps
-    columns = dict(zip(("gap", "pressure", "work", "lost"), np.array(rows).T, strict=True))
-    return columns | {"blocks": np.array(blocks), "jumps": np.array([float(jumps)])}
+    loading = _Loading.of(contact)
+    columns = dict(zip(("gap", "pressure", "work", "lost"), loading.rows.T, strict=True))
+    blocks = [block_means(pressure.astype(float), shape) for pressure in loading.pressures]
+    return columns | {"blocks": np.array(blocks), "jumps": np.array([float(loading.jumps)])}
 
 
 def _loading(contact: Contact) -> Iterator[CohesiveState]:
@@ -151,16 +183,13 @@ class AttractionTable:
 
         Beyond the table the traction falls with the third power of the gap.
         """
-        end = self.pressure.last
-        inside = np.minimum(gap, end)
-        integral, p, slope = self.pressure(inside)
-        energy = self.pressure.whole - integral + self._rest
-        if (far := gap > end).any():
-            ratio = end / gap[far]
-            p_end = self.pressure.values[-1]
-            energy[far] = self._rest * ratio**2
-            p[far] = p_end * ratio**3
-            slope[far] = -3 * p_end * ratio**3 / gap[far]
+        end, p_end = self.pressure.last, self.pressure.values[-1]
+        ratio = end / np.maximum(gap, end)
+        energy, p = self._rest * ratio**2, p_end * ratio**3
+        slope = -3 * p * ratio / end
+        near = gap <= end
+        integral, p[near], slope[near] = self.pressure(gap[near])
+        energy[near] = self.pressure.whole - integral + self._rest
         return energy, -p, -slope
 
     def drawn(self, count: int) -> Array:

@@ -21,6 +21,7 @@ from restitution.contact.state import Array
 from restitution.numerics.box import Box
 from restitution.numerics.convolution.device import CPU, on_device
 from restitution.numerics.grid import Grid
+from restitution.numerics.node_tables import tabulated_potential
 from restitution.surfaces import Surface
 
 if TYPE_CHECKING:
@@ -152,6 +153,38 @@ class BlockTables:
         """The last point of each block with a positive pressure; −1 if there is none."""
         return np.asarray((self.values > 0).cumprod(axis=1).sum(axis=1) - 1)
 
+    def points_at(self, pressure: float) -> Array:
+        """`point_at` of all rows."""
+        if pressure not in self._points:
+            rows = np.arange(len(self.values))[None]
+            at = self.point_at(np.full(rows.shape, pressure), rows)
+            self._points[pressure] = at[0]
+        return self._points[pressure]
+
+    def point_at(self, pressure: Array, row: Index) -> Array:
+        """Where the pressure of each `row` has this value (Pa, not negative), in steps."""
+        values = self.values
+        low, high = np.zeros(row.shape, dtype=np.intp), np.maximum(self.rest[row], 0) + 1
+        while (high - low).max(initial=1) > 1:
+            middle = (low + high) // 2
+            over = values[row, middle] > pressure
+            low, high = np.where(over, middle, low), np.where(over, high, middle)
+        here, there, most = values[row, low], values[row, low + 1], values[row, 0]
+        share = (here - pressure) / np.where(here > there, here - there, 1.0)
+        beyond = (most - pressure) / -self.ends[row, 0]
+        at = np.where(pressure > most, beyond, low + np.clip(share, 0.0, 1.0))
+        least = np.where(pressure > most, -np.inf, low)
+        law = BlockLaw.of_steps(self, row)
+        for _ in range(_NEWTON):
+            _, tension, stiff = law.potential(at)
+            way = (-tension - pressure) / np.maximum(stiff, _SOFT * self.stiffest * self.step[row])
+            at = np.clip(at + way, np.minimum(least, at), np.maximum(low + 1, at))
+        return at
+
+    @cached_property
+    def _points(self) -> dict[float, Array]:
+        return {}
+
 
 def _rows(
     curve: AttractionCurve, cell: tuple[float, float]
@@ -244,6 +277,13 @@ class BlockLaw:
         first, step = tables.first[row] - farther, tables.step[row]
         return cls(tables, row, first, step, first + _CELLS * step, tables.middle[row] - farther)
 
+    @classmethod
+    def of_steps(cls, tables: BlockTables, row: Index) -> BlockLaw:
+        """The law of blocks whose gaps are counted in steps from the first point."""
+        middle = (tables.middle[row] - tables.first[row]) / tables.step[row]
+        ones = np.ones(row.shape)
+        return cls(tables, row, 0 * ones, ones, _CELLS * ones, middle)
+
     def inside(self, box: Box) -> BlockLaw:
         first, step, last, middle = (
             a[box] for a in (self.first, self.step, self.last, self.middle)
@@ -256,28 +296,14 @@ class BlockLaw:
 
     def potential(self, gap: Array) -> tuple[Array, Array, Array]:
         """Energy (J/m²), traction (Pa) and its derivative (Pa/m) at the `gap` (m) of each node."""
-        ends = self.tables.ends[self.row]
-        at = np.minimum((gap - self.first) / self.step, float(_CELLS))
-        cell = np.clip(at.astype(np.intp), 0, _CELLS - 1)
-        t = np.maximum(at, 0.0) - cell
-        of = self.tables.cells[self.row * _CELLS + cell]
-        a, b, c, d, before = (of[..., k] for k in range(5))
-        p, slope = a + t * (b + t * (c + t * d)), b + t * (2 * c + 3 * t * d)
-        integral = before + t * (a + t * (b / 2 + t * (c / 3 + t * d / 4)))
-        if (below := at < 0).any():
-            beyond = at[below]
-            integral[below] += beyond * (p + 0.5 * slope * np.minimum(at, 0.0))[below]
-            p[below] += slope[below] * beyond
-        slope /= self.step
-        tail, reach = ends[..., 1], self.last - self.middle
-        energy = (ends[..., 2] - integral) * self.step + 0.5 * tail * reach
-        if (far := gap > self.last).any():
-            away = (gap - self.middle)[far]
-            ratio = reach[far] / away
-            energy[far] = 0.5 * (tail * reach)[far] * ratio**2
-            p[far] = tail[far] * ratio**3
-            slope[far] = -3 * p[far] / away
-        return energy, -p, -slope
+        out, tables = np.empty_like(self._nodes), self.tables
+        tabulated_potential(gap, self.row, self._nodes, tables.cells, tables.ends, out)
+        energy, traction, stiffness = np.split(out, 3)
+        return energy, traction, stiffness
+
+    @cached_property
+    def _nodes(self) -> Array:
+        return np.concatenate([self.first, self.step, self.middle])
 
     def energy(self, gap: Array) -> Array:
         return self.potential(gap)[0]
@@ -290,22 +316,6 @@ class BlockLaw:
 
     def gap_at(self, pressure: Array) -> Array:
         """Gap (m) of each node at which its pressure (Pa, not negative) has this value."""
-        values, k = self.tables.values, self.row
-        wanted = np.broadcast_to(np.asarray(pressure, dtype=float), k.shape)
-        low, high = np.zeros(k.shape, dtype=np.intp), np.maximum(self.tables.rest[k], 0) + 1
-        while (high - low).max(initial=1) > 1:
-            middle = (low + high) // 2
-            over = values[k, middle] > wanted
-            low, high = np.where(over, middle, low), np.where(over, high, middle)
-        here, there, most = values[k, low], values[k, low + 1], values[k, 0]
-        share = (here - wanted) / np.where(here > there, here - there, 1.0)
-        beyond = (most - wanted) / -self.tables.ends[k, 0]
-        at = np.where(wanted > most, beyond, low + np.clip(share, 0.0, 1.0))
-        least = np.where(wanted > most, -np.inf, low)
-        for _ in range(_NEWTON):
-            _, tension, stiff = self.potential(self.first + self.step * at)
-            way = (-tension - wanted) / (
-                np.maximum(stiff, _SOFT * self.tables.stiffest) * self.step
-            )
-            at = np.clip(at + way, np.minimum(least, at), np.maximum(low + 1, at))
-        return np.asarray(self.first + self.step * at)
+        if np.ndim(pressure) == 0:  # a bound of the material, of which there are few
+            return self.first + self.step * self.tables.points_at(float(pressure))[self.row]
+        return self.first + self.step * self.tables.point_at(np.asarray(pressure), self.row)

@@ -140,9 +140,13 @@ class RepulsionTable:
         return cls(pressure, lost, area, length, curves[0].smooth_bound, ratio)
 
     def bulk_bound(self, smooth: Array) -> Array:
-        """Bound of the nominal pressure (Pa) where smooth bodies have the bound `smooth` (Pa)."""
-        mean = smooth * np.interp(smooth, self.smooth_bound, self.bound_ratio)
-        return np.asarray(np.minimum(mean, self.pressure.values[0]))
+        """Bound of the nominal pressure (Pa) where smooth bodies have the bound `smooth` (Pa).
+
+        It can be above the pressures of the table: on asperities of the long waves, the strain is
+        larger than in a patch that flows. Asperities that yield late do not delay the bulk.
+        """
+        ratio = np.interp(smooth, self.smooth_bound, self.bound_ratio)
+        return np.asarray(smooth * np.minimum(ratio, 1.0))
 
     @property
     def touch(self) -> float:
