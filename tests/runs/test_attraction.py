@@ -154,6 +154,11 @@ def test_errors_come_from_grid_surfaces_and_materials():
         def scales(self):
             return None
 
+        def spectra(self):
+            return self.ends
+
+        ends = ()
+
         def material_ends(self):
             return [("low", "high")]
 
@@ -167,3 +172,6 @@ def test_errors_come_from_grid_surfaces_and_materials():
     assert [float(part[0]) for part in parts] == approx([0.5, half, 0.3], rel=1e-4)
     alone = curve_errors(Fake(), lambda c: c.pull_off_at(work), np.array([2.5]), scattered=False)
     assert len(alone) == 2
+    Fake.ends = [Fake().curve(end) for end in ("low", "high")]
+    joined = curve_errors(Fake(), lambda c: c.pull_off_at(work), np.array([2.5]), scattered=False)
+    assert [float(part[0]) for part in joined] == approx([0.5, 0.3, 0.3], rel=1e-4)

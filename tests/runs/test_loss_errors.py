@@ -60,6 +60,9 @@ class Companion:
     def scales(self):
         return None
 
+    def spectra(self):
+        return []
+
     def material_ends(self):
         return []
 

@@ -151,5 +151,5 @@ def test_the_range_of_a_plate_is_checked():
 
 def test_the_report_has_the_factors(results):
     page = write_run_page(results.path).read_text()
-    assert "plate_factor" in page
+    assert all(f"factor of {name}" in page for name in ("plate", "waves", "viscosity"))
     assert "with plate, waves and viscosity" in page
