@@ -1,6 +1,9 @@
 """The columns of losses in a run, a law, a mixture and a fit."""
 
+import gzip
 import math
+import re
+from base64 import b64decode
 
 import pytest
 
@@ -152,4 +155,5 @@ def test_the_range_of_a_plate_is_checked():
 def test_the_report_has_the_factors(results):
     page = write_run_page(results.path).read_text()
     assert all(f"factor of {name}" in page for name in ("plate", "waves", "viscosity"))
-    assert "with plate, waves and viscosity" in page
+    packed = re.search(r'const FIGURES = "([^"]+)"', page)[1]
+    assert "with plate, waves and viscosity" in gzip.decompress(b64decode(packed)).decode()
