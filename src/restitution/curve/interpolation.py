@@ -10,6 +10,7 @@ two lowest velocities, and is at least 0. docs/dem.md says how often the error e
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import cached_property
 
 import numpy as np
@@ -38,7 +39,7 @@ class RatioCurve:
 
     def at(self, velocity: float) -> float:
         """The ratio at `velocity` (m/s), which must be in the range of `velocities`."""
-        return _pchip(self._L, self._q, math.log(velocity)) - self.adhesion / velocity**2
+        return float(self._cubic(math.log(velocity))) - self.adhesion / velocity**2
 
     def error(self, velocity: float) -> float:
         """Error estimate of the ratio at `velocity` (m/s), continuous and zero at the points.
@@ -51,7 +52,7 @@ class RatioCurve:
             return 0.0
         L = math.log(velocity)
         after, t = self.interval(velocity)
-        line = abs(_pchip(self._L, self._q, L) - float(np.interp(L, self._L, self._q)))
+        line = abs(float(self._cubic(L)) - float(np.interp(L, self._L, self._q)))
         middle = _SAFETY * float(self._left_out[after - 1 : after + 1].max())
         return max(middle * 2 * math.sqrt(t * (1 - t)), line)
 
@@ -81,6 +82,10 @@ class RatioCurve:
         return float(brentq(self.at, below, above))
 
     @cached_property
+    def _cubic(self) -> Callable[[float], Array]:
+        return _pchip(self._L, self._q)
+
+    @cached_property
     def _left_out(self) -> Array:
         """Leave-one-out residuals; an end point has that of its neighbour."""
         n = self._L.size
@@ -89,7 +94,8 @@ class RatioCurve:
         miss = np.zeros(n)
         for k in range(1, n - 1):
             others = np.arange(n) != k
-            miss[k] = abs(_pchip(self._L[others], self._q[others], self._L[k]) - self._q[k])
+            left = _pchip(self._L[others], self._q[others])
+            miss[k] = abs(float(left(float(self._L[k]))) - self._q[k])
         miss[0], miss[-1] = miss[1], miss[-2]
         return miss
 
@@ -99,10 +105,13 @@ def root(ratio: float) -> float:
     return math.sqrt(min(max(ratio, 0.0), 1.0))
 
 
-def _pchip(x: Array, y: Array, at: float) -> float:
+def _pchip(x: Array, y: Array) -> Callable[[float], Array]:
     from scipy.interpolate import PchipInterpolator
 
+    if x.size == 1:
+        return lambda _: y[0]
     # PCHIP divides by the slopes between the points. A slope of 1e-308 makes the quotient infinite,
     # and the derivative at the point becomes 0, which is accurate enough.
     with np.errstate(over="ignore"):
-        return float(y[0]) if x.size == 1 else float(PchipInterpolator(x, y)(at))
+        cubic: Callable[[float], Array] = PchipInterpolator(x, y)
+    return cubic
