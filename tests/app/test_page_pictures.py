@@ -116,3 +116,13 @@ def test_a_curve_that_leaves_zero_jumps(page):
     first = drawn["y"].index(0.8)
     assert drawn["y"][first - 1] == 0
     assert drawn["x"][first - 1] == drawn["x"][first]
+
+
+@pytest.mark.parametrize("width", [700, 820, 1440])
+def test_the_legend_leaves_the_title_of_the_axis_free(app, open_page, width):
+    page = open_page(app.address, viewport={"width": width, "height": 900})
+    rest(page)
+    title, legend = (
+        page.locator(f"#cor {part}").bounding_box() for part in (".xtitle", ".legend .bg")
+    )
+    assert legend["y"] >= title["y"] + title["height"]

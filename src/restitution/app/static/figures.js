@@ -14,6 +14,7 @@ const COLOURS = {
 // Units of axis titles: their SI unit, and its multiple.
 const UNITS = { "m/s": ["m/s", 1], "µm": ["m", 1e-6], "nm": ["m", 1e-9], "N": ["N", 1], "MPa": ["Pa", 1e6] };
 const TITLE = /^(.*) \(([^()]*)\)$/;
+const BELOW = 65, AROUND = 150; // px: from the axis to the legend below its title, and of a plot beside its axes
 const NARROW = 600; // width (px) of a window below which the legend is a list below the plot
 
 export function shown(colour) {
@@ -121,7 +122,7 @@ export function draw(id, spec, more = [], shapes = []) {
     layout.showlegend = false;
     layout.margin = { l: 55, r: 10, t: 10, b: 42 };
     layout.font.size = 12;
-  } else if (layout.legend) layout.legend.y = -0.24;
+  } else if (layout.legend) layout.legend.y = -BELOW / Math.max(100, $(id).clientHeight - AROUND);
   listed(id, narrow ? traces : []);
   $(id).dataset.drawn = "yes";
   const bar = { modeBarButtons: [["toImage", "zoom2d", "pan2d", "resetScale2d"]], displayModeBar: narrow ? false : "hover", displaylogo: false };
