@@ -48,7 +48,7 @@ export function remedyButtons(words, apply) {
 
 // Show warnings, each beside the field that it names if this can be seen, or below the curve.
 export function showWarnings({ information, warnings }, apply) {
-  for (const note of document.querySelectorAll("#groups .warning")) note.remove();
+  for (const note of document.querySelectorAll("#groups .warning:not(#cleared)")) note.remove();
   const rest = [];
   for (const words of warnings) {
     const note = element("p", { class: "warning", role: "note" }, inWords(words), ...remedyButtons(words, apply));
