@@ -30,8 +30,9 @@ from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface
 from restitution.surfaces.cache import kept
-from restitution.surfaces.joined.join import JoinedSpectrum, join
+from restitution.surfaces.joined.join import join
 from restitution.surfaces.joined.read import HowToRead, matching, read_spectra
+from restitution.surfaces.joined.spectrum import JoinedSpectrum
 from restitution.surfaces.joined.twin import twin_of_scans
 from restitution.surfaces.level import Levelling
 from restitution.surfaces.refine import divided

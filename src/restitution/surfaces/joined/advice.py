@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from restitution.display import quantity
-from restitution.surfaces.joined.join import JoinedSpectrum
+from restitution.surfaces.joined.spectrum import JoinedSpectrum
 
 # Wavelengths (m) that instruments usually show, from their makers' usual edges and pixels.
 _INSTRUMENTS = (

@@ -13,8 +13,8 @@ from restitution.display import quantity
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.surfaces.describe import rms_slope
-from restitution.surfaces.joined.join import JoinedSpectrum
 from restitution.surfaces.joined.scan_spectrum import ScanSpectrum
+from restitution.surfaces.joined.spectrum import JoinedSpectrum
 from restitution.surfaces.level import level
 from restitution.surfaces.resample import carried, crop_to, spline
 from restitution.surfaces.surface import Array, Surface
