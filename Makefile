@@ -9,7 +9,7 @@ BUILD := pyproject.toml setup.py $(foreach kind,cpp h,$(wildcard src/restitution
 # What compiled kernels are for, and what a wheel is tried with.
 INSTRUCTION_SETS := avx512 avx2 plain
 FAST_TESTS := tests/theory tests/numerics tests/test_collision.py
-KERNEL_TESTS := tests/numerics/test_compiled.py tests/numerics/convolution/test_operators.py
+KERNEL_TESTS := tests/numerics/test_compiled.py tests/numerics/test_compiled_attraction.py tests/numerics/convolution/test_operators.py
 WITHOUT_COMPILER := CC=/bin/false CXX=/bin/false
 
 .PHONY: help demo test test-programs test-fast test-kernels test-clang test-kratos test-drake wheel test-wheel fuzz mutation lint docs docs-links bench bench-peers bench-periodic clean
