@@ -92,7 +92,8 @@ def test_generated_surfaces_are_refused_before_they_are_made(case_text, tmp_path
 
 def test_a_part_of_a_large_scan_takes_little():
     grid, scan = Grid((40, 40), (1e-6, 1e-6)), Grid((256, 256), (4e-8, 4e-8))
-    assert needs.measured_bytes(grid, scan, twin=False) < 0.3e9
-    assert needs.measured_bytes(grid, scan, twin=True) < 0.5e9
+    program = needs._PROCESS
+    assert needs.measured_bytes(grid, scan, twin=False) < program + 0.05e9
+    assert needs.measured_bytes(grid, scan, twin=True) < program + 0.25e9
     huge = Grid((40, 40), (40e-6, 40e-6))  # 40 000 x 40 000 pixels, which are never made
-    assert needs.measured_bytes(huge, scan, twin=True) < 0.5e9
+    assert needs.measured_bytes(huge, scan, twin=True) < program + 0.25e9
