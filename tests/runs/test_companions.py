@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 from restitution.case.case_file import parse_case
+from restitution.contact.cohesive import equilibrium
 from restitution.curve.work_curve import WorkCurve
 from restitution.errors import CaseError
+from restitution.numerics.truncated_newton import minimise_locally
 from restitution.runs.companion_curves import curve_of
 from restitution.runs.companions import Companions, ScaleCurves, coarser_contact
 from restitution.surfaces.refine import coarsen
@@ -45,6 +47,26 @@ def test_other_curves_of_a_cohesive_contact_are_compared_at_the_same_impacts(tmp
     assert other.at(work) == approx(full.at(work), abs=0.01)
     assert other.ratio(work) == approx(full.ratio(work), abs=0.02)
     assert other.pull_off_at(work) == approx(full.pull_off_at(work), rel=0.08)
+
+
+def test_another_curve_at_one_depth_takes_two_thirds_of_the_products_of_the_own(
+    tmp_path, monkeypatch
+):
+    products = 0
+
+    def counted(K, *arguments, **options):
+        nonlocal products
+        before = K.count
+        found = minimise_locally(K, *arguments, **options)
+        products += K.count - before
+        return found
+
+    monkeypatch.setattr(equilibrium, "minimise_locally", counted)
+    companions = Companions(parse_case(COHESIVE), tmp_path, [2e-9])
+    work, own = companions.reference.work, products
+    other = companions.curve(coarser_contact(companions.case.variant(1).contact(tmp_path)))
+    assert other.work[0] < work[0] <= other.work[-1]
+    assert products - own < 0.66 * own
 
 
 def test_other_materials_may_need_finer_cells_than_a_companion_has(tmp_path):

@@ -254,8 +254,10 @@ class Adhesion(ABC):
         contact: Contact,
         reached: Callable[[State], bool],
         ahead: Callable[[State, float], float],
+        *,
         start: State | None,
         scale: float,
+        residual: float,
     ) -> tuple[State, State] | None:
         """Last state of loading that is not `reached` and the first that is; None: no path.
 

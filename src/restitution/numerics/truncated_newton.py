@@ -20,6 +20,7 @@ from restitution.numerics.expressions import (
     advance,
     dot,
     largest_ratio,
+    max_magnitude,
     redirect,
 )
 
@@ -33,6 +34,10 @@ Secant = Callable[[Array, Array, Array, Array], Array]
 MOST_STEPS = 300  # Newton steps after which the solve counts as not converged
 _MOST_ITERATIONS = 500  # limit on the conjugate-gradient iterations of one Newton step
 _FORCING = 0.1  # largest relative residual of the linear system of a Newton step
+
+# While the error of products in single precision is below this share of the tolerance, u = K p
+# follows from those of a Newton step.
+_HARMLESS, _SINGLE = 0.1, 1e-6
 
 # Let q be the actual decrease of the energy in a step, divided by the predicted decrease. The step
 # is accepted if q > _TAKEN. The trust region shrinks if q < _POOR. It grows if q > _GOOD and the
@@ -83,6 +88,7 @@ def minimise_locally(
     phi, slope, k = potential(u)
     energy = 0.5 * dot(p, u) + float(phi.sum())
     radius, negative, steps = math.inf, False, 0
+    exact = True  # whether u is K p in double precision
     while True:
         r = p + slope
         if zero_mean:
@@ -90,24 +96,30 @@ def minimise_locally(
             r -= r.mean()
         residual = largest_ratio(r, k, 1 / K.diagonal)
         if residual <= tolerance or steps >= MOST_STEPS:
-            break
+            if exact:
+                break
+            u, exact = K(p), True
+            phi, slope, k = potential(u)
+            energy = 0.5 * dot(p, u) + float(phi.sum())
+            continue
         steps += 1
         h = k if secant is None else secant(u, p, slope, k)
         x, Sx, predicted, at_edge, bent = _newton_step(
             K, r, h, energy, (radius, length), zero_mean=zero_mean
         )
         negative |= bent
+        exactly = _SINGLE * max_magnitude(x) > _HARMLESS * tolerance
         size = math.sqrt(max(dot(x, Sx), 0.0))
         new_p = p + Sx
-        new_u = K(new_p)  # in double precision; the products within a step are in single precision
-        phi, new_slope, new_k = potential(new_u)
-        new_energy = 0.5 * dot(new_p, new_u) + float(phi.sum())
-        change = new_energy - energy
+        new_u = K(new_p) if exactly else u + x
+        new_phi, new_slope, new_k = potential(new_u)
+        change = dot(p, new_u - u) + 0.5 * dot(Sx, x) + float((new_phi - phi).sum())
         rounding = abs(predicted) <= _ROUNDING * (abs(energy) + 0.5 * dot(p, u))
         if not (rounding or (predicted < 0 and change < _TAKEN * predicted)):
             radius = 0.3 * size
             continue
-        p, u, energy, slope, k = new_p, new_u, new_energy, new_slope, new_k
+        p, u, phi, slope, k, exact = new_p, new_u, new_phi, new_slope, new_k, exactly
+        energy += change
         if rounding:
             continue
         if at_edge and change < _GOOD * predicted:

@@ -17,6 +17,7 @@ from restitution.curve.work_curve import WorkCurve
 from restitution.errors import DomainError, RestitutionError
 
 _TOLERANCE = 0.005  # allowed error of COR due to the steps of adhesive unloading
+_RESIDUAL = 1e-6  # of solves on a loading path between other surfaces' works
 
 # A companion curve has two more depths than the run: the smallest depth times the first factor, and
 # the largest depth times the second factor. They are needed because other surfaces reach the same
@@ -73,11 +74,14 @@ def loads_around(contact: Contact, works: Sequence[float]) -> list[Load]:
     """Loads on a path to below the first of `works` (J), beyond the last, and near the others."""
     first, *others = works
     ends = [(first, 0), *((work, 1) for work in others or works)]
+    paths: dict[float, tuple[State, State]] = {}
 
     def to(work: float, side: int, start: State | None) -> State:
-        scale = _TOLERANCE / RESTITUTION_ERROR * work
-        path = path_around_work(contact, work, start=start, scale=scale)
-        assert path is not None
-        return path[side]
+        if work not in paths:
+            scale = _TOLERANCE / RESTITUTION_ERROR * work
+            path = path_around_work(contact, work, start=start, scale=scale, residual=_RESIDUAL)
+            assert path is not None
+            paths[work] = path
+        return paths[work][side]
 
     return [Load(contact, partial(to, work, side), work) for work, side in ends]

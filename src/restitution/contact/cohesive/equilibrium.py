@@ -119,12 +119,12 @@ class BoundedLaw:
         gap = self.base + u
         inside = np.maximum(gap, self.least)
         energy, slope, stiff = self._law.potential(inside)
-        at = np.nonzero(gap < inside)
-        below = gap[at] - inside[at]
-        limit, rate = (np.broadcast_to(x, gap.shape)[at] for x in (self._slope, self._stiff))
-        energy[at] += below * (limit + 0.5 * rate * below)
-        slope[at] += rate * below
-        stiff[at] = rate
+        below = gap - inside
+        if below.any():
+            energy += below * (self._slope + 0.5 * self._stiff * below)
+            if not self.yields:
+                slope += self._stiff * below
+            np.copyto(stiff, self._stiff, where=below < 0)
         return energy, slope, stiff
 
     def secant(self, u: Array, p: Array, slope: Array, stiff: Array) -> Array:
@@ -306,7 +306,13 @@ def on_box(state: CohesiveState, box: Box, *, residual: float) -> CohesiveState:
     new = solve_cohesive(
         contact, indentation, box, p=p, limit=state.bound, history=state, residual=residual
     )
-    return replace(with_losses_of(state, new), before=state.before)
+    plastic, error = contact.plasticity.work(state, new)
+    return replace(
+        with_losses_of(state, new),
+        before=state.before,
+        plastic_work=state.plastic_work + plastic,
+        work_error=state.work_error + error,
+    )
 
 
 def is_unique(state: CohesiveState) -> bool:

@@ -19,7 +19,6 @@ from restitution.contact.cohesive.equilibrium import CohesiveState, box_gap
 from restitution.contact.cohesive.loading import load_cohesive, load_until, move
 from restitution.contact.cohesive.separation import separate_cohesive, separation_of
 from restitution.contact.contact import Contact
-from restitution.contact.equilibrium import RESIDUAL
 from restitution.contact.models import (
     COMPANION,
     EQUILIBRIUM_SEPARATION,
@@ -182,10 +181,12 @@ class CohesiveLaw(Adhesion):
         contact: Contact,
         reached: Callable[[State], bool],
         ahead: Callable[[State, float], float],
+        *,
         start: State | None,
         scale: float,
+        residual: float,
     ) -> tuple[State, State] | None:
-        return load_until(contact, reached, ahead, start=start, residual=RESIDUAL, scale=scale)
+        return load_until(contact, reached, ahead, start=start, residual=residual, scale=scale)
 
     def unload(
         self, state: State, *, steps: int, tolerance: float, residual: float, known: Sequence[State]

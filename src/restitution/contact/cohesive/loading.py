@@ -83,13 +83,16 @@ def load_until(
     if reached(before):
         return before, before
     z0 = law_of(contact).equilibrium_separation
-    while True:
-        way = max(before.indentation, 4 * z0)
-        if before.force > 0 and before.before is not None:
-            stiffness = before.force - before.before.force
-            stiffness /= before.indentation - before.before.indentation
-            way = min(way, max(_BEYOND * ahead(before, stiffness), _ONWARD * z0))
-        for state in follow(before, before.indentation + way, residual=residual, scale=scale):
-            if reached(state):
-                return before, state
-            before = state
+
+    def goal(state: CohesiveState) -> float:
+        if state.force <= 0 or state.before is None:
+            return math.inf
+        stiffness = state.force - state.before.force
+        stiffness /= state.indentation - state.before.indentation
+        return state.indentation + max(_BEYOND * ahead(state, stiffness), _ONWARD * z0)
+
+    for state in follow(before, math.inf, residual=residual, scale=scale, goal=goal):
+        if reached(state):
+            return before, state
+        before = state
+    raise AssertionError("a path without an end ended")

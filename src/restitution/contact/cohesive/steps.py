@@ -8,7 +8,7 @@ energy dissipated by adhesion. Its uncertainty is half the jump of the force tim
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -48,6 +48,7 @@ _UNDER_TENSION, _NEAR, _TENSE, _SLIGHT = 0.4, 2.0, 0.4, 0.02
 # than _AT_FOLD z₀ for it.
 _AT_JUMP, _AT_FOLD = 3e-3, 0.01
 _GROWTH = 3.0  # largest ratio of the lengths of two steps
+_NEARLY = 0.8  # a step of this share of the way that is left goes all the way
 # Shortest step, in units of z₀. If even this step fails, the path cannot be followed, and an error
 # is raised.
 _LEAST_STEP = 1e-5
@@ -55,7 +56,7 @@ _MOST_STEPS = 5000
 
 # When the box (the part of the grid that is solved) must grow, it is made large enough for about
 # this multiple of the next indentation. So it seldom grows.
-_WIDER = 2.0
+_WIDER = 1.5
 # In unloading it shrinks where this share of its nodes suffices.
 _NARROWER = 0.4
 
@@ -83,13 +84,14 @@ def follow(
     accuracy: float = ACCURACY,
     scale: float = 0.0,
     guide: Guide | None = None,
+    goal: Callable[[CohesiveState], float] | None = None,
 ) -> Iterator[CohesiveState]:
     """Yield the equilibria from `state` (not included) to the indentation `target`.
 
     The error of a step is `accuracy` times the energy `scale` (J), at least that of the step
     itself and, in loading, a lower bound of that at `target`. If `target` is infinite, the caller
-    must stop the iteration. The solves start from the changes along `guide`. Raises
-    `NotConvergedError` if an equilibrium cannot be followed.
+    must stop the iteration. `goal` estimates the target from each state anew. The solves start from
+    the changes along `guide`. Raises `NotConvergedError` if an equilibrium cannot be followed.
     """
     law, pair = law_of(state.contact), state.contact.pair
     z0 = law.equilibrium_separation
@@ -98,12 +100,17 @@ def follow(
     if state.smallest_gap < 1.1 * z0:  # the bodies touch
         shortest = max(shortest, (0.02 if sign > 0 else 0.08) * abs(state.indentation))
     length = shortest
-    if (earlier := _earlier(state, target)) is not None:
-        length = max(length, abs(state.indentation - earlier.indentation))
+    # The last step before a prescribed depth is often short, so the one before counts, too.
+    later, earlier = state, _earlier(state, target)
+    for _ in range(2):
+        if earlier is not None:
+            length = max(length, abs(later.indentation - earlier.indentation))
+            later, earlier = earlier, _earlier(earlier, target)
     rejected = 0  # convolutions of steps that were not accepted
     tension = 0.0
     require_inside_grid(state)
     for _ in range(_MOST_STEPS):
+        target = target if goal is None else goal(state)
         left = abs(target - state.indentation)
         if left == 0:
             return
@@ -112,7 +119,7 @@ def follow(
             length = min(length, _UNDER_TENSION * (z0 + law.length(pair)))
         elif sign < 0 and state.force > 0 and state.before is not None:
             length = min(length, _to_tension(state, length))
-        last = length >= left * (1 - 1e-9)
+        last = length >= _NEARLY * left
         at = target if last else state.indentation + sign * min(length, 0.5 * left)
         if guide is not None and not last:
             at = guide.stop(state.indentation, at)

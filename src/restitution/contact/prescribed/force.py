@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from restitution.arguments import typed
 from restitution.contact.contact import Contact
+from restitution.contact.equilibrium import RESIDUAL
 from restitution.contact.interface import interface_of
 from restitution.contact.loading import solve
 from restitution.contact.prescribed.pressure import solve_at_pressure
@@ -60,7 +61,14 @@ def solve_at_force(contact: Contact, force: float, *, start: State | None = None
     def ahead(state: State, stiffness: float) -> float:
         return (force - state.force) / stiffness if stiffness > 0 else math.inf
 
-    path = interface.enclose(contact, lambda state: state.force >= force, ahead, start, 0.0)
+    path = interface.enclose(
+        contact,
+        lambda state: state.force >= force,
+        ahead,
+        start=start,
+        scale=0.0,
+        residual=RESIDUAL,
+    )
     if path is not None:
         start, (low, high) = path[0], (state.indentation for state in path)
     state = start

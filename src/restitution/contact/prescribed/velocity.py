@@ -76,11 +76,16 @@ def solve_at_velocity(
 
 
 def path_around_work(
-    contact: Contact, work: float, *, start: State | None, scale: float = 0.0
+    contact: Contact,
+    work: float,
+    *,
+    start: State | None,
+    scale: float = 0.0,
+    residual: float = RESIDUAL,
 ) -> tuple[State, State] | None:
     """Last state of loading with less than `work` (J), and the next one; None: no path.
 
-    `scale` is that of `Adhesion.enclose`.
+    `scale` and `residual` are those of `Adhesion.enclose`.
     """
 
     def reached(state: State) -> bool:
@@ -92,7 +97,9 @@ def path_around_work(
             return left / state.force
         return (math.sqrt(state.force**2 + 2 * stiffness * left) - state.force) / stiffness
 
-    return interface_of(contact).enclose(contact, reached, ahead, start, scale)
+    return interface_of(contact).enclose(
+        contact, reached, ahead, start=start, scale=scale, residual=residual
+    )
 
 
 def mass_in_impact(pair: Pair, velocity: float) -> float:
