@@ -10,6 +10,7 @@ from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface, describe, level, rms_slope
 from restitution.surfaces.joined import response
 from restitution.surfaces.joined.join import join
+from restitution.surfaces.joined.places import ranges, scatter_between_places, scatter_in
 from restitution.surfaces.joined.scan_spectrum import ScanSpectrum
 from restitution.surfaces.joined.tip import tip_cut_off
 from restitution.surfaces.joined.twin import twin_of_scans
@@ -238,3 +239,37 @@ def test_small_and_flat_scans_are_refused():
     flat = Surface(np.ones((32, 32)), Grid((32, 32), (1e-6, 1e-6)))
     with pytest.raises(SurfaceError, match=r"^flat: is flat"):
         ScanSpectrum.of(flat, -1, "flat")
+
+
+def test_the_predicted_scatter_is_that_between_places():
+    edges, sets = (150e-6, 15e-6), range(12)
+    sets = [
+        join([spectrum(KNOWN.scan(edge, 64, 100 * k + i), f"{i}") for i, edge in enumerate(edges)])
+        for k in sets
+    ]
+    q, common = sets[0].wave_number, [np.log(one.density) for one in sets]
+    observed = np.std(common, axis=0, ddof=1)
+    for waves in ranges(sets[0], 0.0, 1.0)[:4]:
+        at = np.geomspace(2 * np.pi / waves[1], 2 * np.pi / waves[0], 33)
+        actual = np.sqrt(np.mean(np.interp(np.log(at), np.log(q), observed) ** 2))
+        predicted = np.sqrt(np.mean([scatter_in(one, waves) ** 2 for one in sets]))
+        assert 0.5 < actual / predicted < 1.6
+        assert scatter_in(sets[0], waves, 4) < 0.9 * scatter_in(sets[0], waves)
+
+
+def test_waves_that_scatter_are_named_with_the_number_of_places(joined):
+    scattered = list(scatter_between_places(joined, 0.0, 1.0))
+    longest = scattered[0]
+    assert longest.longest == approx(OPTICAL[0], rel=1e-9)
+    assert longest.scan == "optical"
+    assert longest.scatter > 0.2
+    assert all(one.places is None or one.places > 1 for one in scattered)
+    made = twin_of_scans(joined, Grid((96, 96), (3e-6, 3e-6)), 1)
+    information = made.provenance["information"]
+    assert f"between places of the surface, C scatters by {longest.scatter:.0%} from" in information
+    assert "places like optical)" in information
+
+
+def test_scans_of_many_places_scatter_little():
+    scans = [replace(scan, name=f"{scan.name} {k}") for k in range(16) for scan in three(k)]
+    assert list(scatter_between_places(join(scans), 0.0, OPTICAL[0] / 8)) == []
