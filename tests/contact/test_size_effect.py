@@ -25,6 +25,7 @@ from restitution import (
     unloading_path,
 )
 from restitution.contact.checks.model_error import model_error
+from restitution.contact.checks.resolution import resolves_contact
 from restitution.contact.plasticity.size_effect import (
     BERKOVICH,
     dislocation_density,
@@ -329,3 +330,25 @@ def test_another_patch_that_begins_to_touch_moves_no_bound_by_a_jump():
     change = np.abs(np.diff(bound, axis=0)) / H0  # between the bumps
     assert change.sum(axis=0).max() > 0.1
     assert change.max() < 0.05
+
+
+@pytest.mark.parametrize(
+    ("nodes", "waves", "seed", "length", "depths"),
+    [
+        (80, (0.2e-6, 4.8e-6), 368, 0.4e-6, (38e-9, 50e-9)),
+        (78, (0.1e-6, 1.2e-6), 366, 0.05e-6, (18e-9, 26e-9)),
+    ],
+)
+def test_the_force_rises_with_the_depth_where_patches_merge(nodes, waves, seed, length, depths):
+    """Of 200 random contacts those with the largest falls (evidence/size_effect/monotone.csv)."""
+    grid = Grid((nodes, nodes), (waves[0], waves[0]))
+    surface = generate_surface(
+        grid, kind="exponential", rms=30e-9, correlation_length=waves[1], seed=seed
+    )
+    body = Body(50e-6, 210e9, 0.3, 7850.0)
+    contact = Contact(Pair(body, body), surface, SizedBound(0.3e9, length))
+    states = [solve(contact, float(depth)) for depth in np.geomspace(*depths, 10)]
+    change = np.diff(np.log([state.force for state in states]))
+    resolved = [resolves_contact(state) for state in states[1:]]
+    assert np.all(change[resolved] > 0)
+    assert np.all(change > -0.005)

@@ -76,7 +76,7 @@ def _showing(spectrum: JoinedSpectrum, waves: tuple[float, float]) -> int:
 
     def count(k: int) -> tuple[float, float]:
         scan = spectrum.spectra[k]
-        used = used_bands(scan, spectrum.spectra) & scan.inside(*waves)
+        used = np.logical_and(used_bands(scan, spectrum.spectra), scan.inside(*waves))
         return float(scan.modes[used].sum()), scan.edge
 
     return max(range(len(spectrum.spectra)), key=count)
