@@ -69,6 +69,20 @@ def test_hertz_ends_where_the_contact_is_no_longer_small():
     assert f"{limit:.3g} m/s (indentation 0.01 R*)" in found.holds
 
 
+def test_smooth_bodies_with_a_size_effect_are_those_of_a_higher_pressure():
+    sized = 'yield_pressure = "560 MPa"\nsize_effect = "1 um"\n'
+    R, _, _ = bodies(case_of(second=WALL))
+    harder = math.sqrt(1 + 1e-6 / (1.5 * 0.358**2 * R))
+    equal = f'yield_pressure = "{560e6 * harder!r} Pa"\n'
+    found, expected = (by_name(case_of(second=WALL, interface=i)) for i in (sized, equal))
+    for name in ("hertz", "thornton-ning"):
+        assert found[name].parameters == approx(expected[name].parameters, rel=1e-12)
+        inside = np.isfinite(expected[name].restitution)
+        assert np.array_equal(np.isfinite(found[name].restitution), inside)
+        same = expected[name].restitution[inside]
+        assert found[name].restitution[inside] == approx(same, rel=1e-9)
+
+
 def test_thornton_ning_takes_the_pressure_of_the_case():
     case = case_of(second=WALL)
     R, E, m = bodies(case)

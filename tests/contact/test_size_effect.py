@@ -24,7 +24,14 @@ from restitution import (
     step,
     unloading_path,
 )
-from restitution.contact.plasticity.size_effect import BERKOVICH, dislocation_density
+from restitution.contact.checks.model_error import model_error
+from restitution.contact.checks.resolution import resolves_contact
+from restitution.contact.plasticity.size_effect import (
+    BERKOVICH,
+    dislocation_density,
+    error_of_law,
+)
+from restitution.contact.prescribed.force import solve_at_force
 from restitution.errors import CaseError
 from tolerance import approx
 
@@ -227,3 +234,121 @@ def test_density_of_hertz_is_its_curvature():
 def test_impossible_lengths_are_refused(length):
     with pytest.raises(CaseError, match=r"size_effect: .* is not positive and finite"):
         SizedBound(1e9, length)
+
+
+@pytest.mark.parametrize("radius", [2e-6, 1e-3])
+@pytest.mark.parametrize("model", [SizedBound(1e9, 1e-6), ExpandingCavity(0.4e9, 1e9, 1e-6)])
+def test_smooth_spheres_yield_as_those_without_size_effect_that_are_harder(model, radius):
+    half, depth = 0.3 * radius, 0.02 * radius
+    contact = indenter(lambda r: r**2 / (2 * radius), half, 80, model, radius)
+    assert contact.pair.radius == approx(radius, rel=1e-12)
+    harder = replace(contact, plasticity=model.of_smooth(contact.pair))
+    assert harder.plasticity.hardness == approx(
+        model.hardness * math.sqrt(1 + 1e-6 / (1.5 * BERKOVICH**2 * radius)), rel=1e-12
+    )
+    one, other = (collide(solve(each, depth)) for each in (contact, harder))
+    assert one.restitution == approx(other.restitution, rel=0.01)
+    assert one.loading_work == approx(other.loading_work, rel=0.01)
+
+
+def test_a_surface_harder_than_its_bulk_carries_more_than_the_bulk_would():
+    """The whole grid yields; the bound of large contacts is no limit of the force."""
+    contact = indenter(lambda r: np.where(r <= 1e-7, 0, 1e-6), 0.12e-6, 32, SizedBound(H0, 1e-6))
+    capacity = H0 * contact.grid.cell_area * 32**2
+    state = solve_at_force(contact, 1.2 * capacity)
+    assert state.force == approx(1.2 * capacity, rel=1e-4)
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("kind", [0, 1])
+def test_any_force_is_met(kind, seed):
+    contact = rough(models(0.4e-6)[kind], seed=seed)
+    force = 0.77 * solve(contact, DEEP).force
+    assert solve_at_force(contact, force).force == approx(force, rel=1e-4)
+
+
+LENGTHS = (0.02e-6, 0.1e-6, 0.5e-6, 3e-6)
+
+
+def test_the_error_of_the_law_grows_with_h_star_over_the_depth():
+    depth = np.geomspace(5e-9, 50e-6, 60)
+    error = np.array([error_of_law(length, 1 / depth) for length in (0.0, *LENGTHS)])
+    assert np.all(error[0] == 0)
+    assert np.all(np.diff(error, axis=0) > 0)
+    assert np.all(np.diff(error[1:], axis=1) < 0)
+    assert np.all(error[:, -1] < 0.13 * np.array([0.0, *LENGTHS]) / 50e-6 + 1e-5)
+    assert error.max() < 1
+
+
+def test_the_largest_density_bounds_the_hardness():
+    """The mean of the density of a cone, tan θ/(br) but at most ρ, over a hemisphere."""
+    for depth in (30e-9, 100e-9, 250e-9):
+        r = np.linspace(0, depth, 20001)[1:]
+        local = np.minimum(1 / r, 1 / 100e-9)
+        kept = np.average(local, weights=r**2) / np.average(1 / r, weights=r**2)
+        x = 1e6  # far above the scatter of h*
+        softer = 1 - math.sqrt((1 + x * kept) / (1 + x))
+        known = float(error_of_law(x * depth, np.array(1 / depth)))
+        assert known == approx(math.hypot(softer, 0.13), rel=1e-3)
+
+
+@pytest.mark.parametrize("kind", [0, 1])
+def test_the_model_error_includes_that_of_the_law(kind):
+    def error(length):
+        state = solve(rough(models(length)[kind]), DEEP)
+        off = state.contact.plasticity.hardness_error(state)
+        return off, model_error(state, collide(state).restitution)
+
+    assert error(0.0)[0] == 0.0
+    assert error(1e-30)[1] == approx(error(0.0)[1], rel=1e-9)
+    by_law, whole = np.transpose([error(length) for length in (0.0, *LENGTHS)])
+    assert np.all(np.diff(by_law) > 0)
+    assert np.all(whole[1:] > whole[0])
+
+
+@pytest.mark.parametrize("depth", [1.0, 0.1])
+def test_the_error_of_the_law_grows_on_sharper_asperities(depth):
+    """The same contact at another scale, with the same h*, has other h*/depth."""
+    shares = []
+    for scale in (10.0, 1.0):
+        state = solve(rough(models(0.4e-6)[0], scale=scale), depth * DEEP * scale)
+        shares.append(state.contact.plasticity.hardness_error(state))
+    assert 0 < shares[0] < shares[1]
+
+
+def test_another_patch_that_begins_to_touch_moves_no_bound_by_a_jump():
+    """Two bumps, one higher; nodes between them belong to both."""
+    grid = Grid((48, 48), (10e-9, 10e-9))
+    x, y = grid.x[:, None], grid.y[None, :]
+    high, low = (-((x - at) ** 2 + y**2) / 2e-6 for at in (-80e-9, 120e-9))
+    body = Body(1e-3, STIFF, 0.0)
+    bound = []
+    for below in np.linspace(2.2e-9, 1.2e-9, 41):
+        surface = Surface(np.maximum(high, low - below), grid)
+        contact = Contact(Pair(body, body), surface, SizedBound(H0, 0.4e-6))
+        bound.append(contact.plasticity.bound(contact, 1.5e-9, 1e-8)[0][26:30, 20:28])
+    change = np.abs(np.diff(bound, axis=0)) / H0  # between the bumps
+    assert change.sum(axis=0).max() > 0.1
+    assert change.max() < 0.05
+
+
+@pytest.mark.parametrize(
+    ("nodes", "waves", "seed", "length", "depths"),
+    [
+        (80, (0.2e-6, 4.8e-6), 368, 0.4e-6, (38e-9, 50e-9)),
+        (78, (0.1e-6, 1.2e-6), 366, 0.05e-6, (18e-9, 26e-9)),
+    ],
+)
+def test_the_force_rises_with_the_depth_where_patches_merge(nodes, waves, seed, length, depths):
+    """Of 200 random contacts those with the largest falls (evidence/size_effect/monotone.csv)."""
+    grid = Grid((nodes, nodes), (waves[0], waves[0]))
+    surface = generate_surface(
+        grid, kind="exponential", rms=30e-9, correlation_length=waves[1], seed=seed
+    )
+    body = Body(50e-6, 210e9, 0.3, 7850.0)
+    contact = Contact(Pair(body, body), surface, SizedBound(0.3e9, length))
+    states = [solve(contact, float(depth)) for depth in np.geomspace(*depths, 10)]
+    change = np.diff(np.log([state.force for state in states]))
+    resolved = [resolves_contact(state) for state in states[1:]]
+    assert np.all(change[resolved] > 0)
+    assert np.all(change > -0.005)

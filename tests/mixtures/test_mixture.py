@@ -2,7 +2,9 @@
 
 import csv
 import json
+import math
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +19,7 @@ from restitution.mixtures.mixture_file import parse_mixture
 from restitution.mixtures.scaling import FamilyLaws
 from restitution.results.writer import ResultsFolder
 from restitution.runs.run import run_case
+from restitution.theory import FirstYield
 from tolerance import approx
 
 STUDIES = Path(__file__).parents[2] / "evidence" / "mixture"
@@ -64,6 +67,20 @@ def test_unlike_spheres_take_their_velocities_from_equal_work(smooth, tmp_path):
         assert point.ratio == approx(node.curve().at(same_work), rel=1e-9)
         forces = np.log([node.column("velocity"), node.column("force")])
         assert point.force == approx(np.exp(np.interp(np.log(same_work), *forces)), rel=1e-9)
+
+
+def test_smooth_spheres_with_a_size_effect_yield_at_the_pressure_of_their_radius(smooth, tmp_path):
+    keys = {"yield_pressure": "0.8 GPa", "size_effect": "3 um"}
+    mixture = replace(smooth, interfaces={frozenset(): {**smooth.interfaces[frozenset()], **keys}})
+    family = families(mixture)[0]
+    ends = (family.radii[0], family.radii[-1])
+    laws = FamilyLaws(family, tuple(law_at(family, radius, tmp_path) for radius in ends))
+    for pair in family.pairs:
+        law = laws.law(pair)
+        p_y = 0.8e9 * math.sqrt(1 + 1.5e-6 / (1.5 * 0.358**2 * pair.radius))  # half in each body
+        first = FirstYield(pair.radius, law.contact_modulus, p_y)
+        assert law.yield_pressure == approx(p_y, rel=1e-9)
+        assert law.yield_velocity == approx(float(first.velocity(pair.mass)), rel=1e-6)
 
 
 def test_the_interpolation_error_vanishes_at_computed_radii_only(mixture_text, tmp_path):

@@ -49,3 +49,29 @@ def test_the_size_effect_that_is_left_out_is_estimated():
 def test_a_given_key_is_no_reason_to_warn(given):
     results = run({**CASE, "interface": {**CASE["interface"], "size_effect": given}})
     assert sharp(results) == []
+
+
+def test_patches_of_short_waves_count_in_what_is_left_out():
+    """Copper whose waves below the grid are in patches, without and with the key."""
+    case = {
+        **CASE,
+        "roughness": {
+            "kind": "self-affine",
+            "rms": "15 nm",
+            "hurst": 0.8,
+            "rolloff": "2 um",
+            "shortest": "0.4 um",
+            "seed": 1,
+            "below_grid": "patch",
+            "split": "0.8 um",
+        },
+        "grid": {"nodes": 64, "spacing": "0.4 um"},
+        "impact": {"velocity": "20 mm/s"},
+    }
+    assert run({**case, "total_error": False}).summary["status"] == "complete"
+    given = {**case["interface"], "size_effect": "0.464 um"}
+    harder, off = (
+        run({**case, "interface": {**given, "size_effect": size}, "total_error": False})
+        for size in ("0.464 um", "0 um")
+    )
+    assert harder.curve.points[0].model_error > off.curve.points[0].model_error + 0.005

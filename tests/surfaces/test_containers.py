@@ -235,3 +235,13 @@ class TestLineScans:
         x = [*range(30), *range(2000, 2030)]
         with pytest.raises(SurfaceError, match="no points from"):
             self.read(tmp_path, "\n".join(f"{a} {a % 3}" for a in x), unit="um")
+
+
+def test_a_line_whose_positions_have_another_unit_is_refused(tmp_path):
+    """Positions in µm and heights in nm, but one unit for both."""
+    x, z = np.linspace(0, 15, 200), 150 * np.sin(np.linspace(0, 30, 200))
+    np.savetxt(tmp_path / "line.txt", np.c_[x, z])
+    with pytest.raises(SurfaceError, match=r"line\.txt: its heights span .* different units"):
+        read_line(tmp_path / "line.txt", unit="nm")
+    line = read_line(tmp_path / "line.txt", unit="nm", size=15e-6)
+    assert np.ptp(line.height) == approx(300e-9, rel=0.01)

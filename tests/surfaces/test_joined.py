@@ -8,8 +8,10 @@ import pytest
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface, describe, level, rms_slope
+from restitution.surfaces.clean import fill_harmonically
 from restitution.surfaces.joined import response
 from restitution.surfaces.joined.join import join
+from restitution.surfaces.joined.places import ranges, scatter_between_places, scatter_in
 from restitution.surfaces.joined.scan_spectrum import ScanSpectrum
 from restitution.surfaces.joined.tip import tip_cut_off
 from restitution.surfaces.joined.twin import twin_of_scans
@@ -238,3 +240,100 @@ def test_small_and_flat_scans_are_refused():
     flat = Surface(np.ones((32, 32)), Grid((32, 32), (1e-6, 1e-6)))
     with pytest.raises(SurfaceError, match=r"^flat: is flat"):
         ScanSpectrum.of(flat, -1, "flat")
+
+
+def test_the_predicted_scatter_is_that_between_places():
+    edges, sets = (150e-6, 15e-6), range(12)
+    sets = [
+        join([spectrum(KNOWN.scan(edge, 64, 100 * k + i), f"{i}") for i, edge in enumerate(edges)])
+        for k in sets
+    ]
+    q, common = sets[0].wave_number, [np.log(one.density) for one in sets]
+    observed = np.std(common, axis=0, ddof=1)
+    for waves in ranges(sets[0], 0.0, 1.0)[:4]:
+        at = np.geomspace(2 * np.pi / waves[1], 2 * np.pi / waves[0], 33)
+        actual = np.sqrt(np.mean(np.interp(np.log(at), np.log(q), observed) ** 2))
+        predicted = np.sqrt(np.mean([scatter_in(one, waves) ** 2 for one in sets]))
+        assert 0.5 < actual / predicted < 1.6
+        assert scatter_in(sets[0], waves, 4) < 0.9 * scatter_in(sets[0], waves)
+
+
+def test_waves_that_scatter_are_named_with_the_number_of_places(joined):
+    scattered = list(scatter_between_places(joined, 0.0, 1.0))
+    longest = scattered[0]
+    assert longest.longest == approx(OPTICAL[0], rel=1e-9)
+    assert longest.scan == "optical"
+    assert longest.scatter > 0.2
+    assert all(one.places is None or one.places > 1 for one in scattered)
+    made = twin_of_scans(joined, Grid((96, 96), (3e-6, 3e-6)), 1)
+    information = made.provenance["information"]
+    assert f"between places of the surface, C scatters by {longest.scatter:.0%} from" in information
+    assert "places like optical)" in information
+
+
+def test_scans_of_many_places_scatter_little():
+    scans = [replace(scan, name=f"{scan.name} {k}") for k in range(16) for scan in three(k)]
+    assert list(scatter_between_places(join(scans), 0.0, OPTICAL[0] / 8)) == []
+
+
+@pytest.mark.parametrize("cut", [slice(None), slice(20, 90)])
+def test_two_scans_of_one_place_are_refused(cut):
+    """A copy, or a part of a scan; levelling them differently hides nothing."""
+    surface = KNOWN.scan(*AFM, 2)
+    part = surface.height[cut, cut]
+    grid = Grid(part.shape, surface.grid.spacing)
+    tilted = part + 0.3 * grid.x[:, None] + 1e-6
+    again = spectrum(Surface(tilted, grid), "again")
+    with pytest.raises(SurfaceError, match="afm and again: show the same place"):
+        join([*three(), again])
+
+
+def test_two_places_with_the_same_pixels_are_joined():
+    join([*three(), spectrum(KNOWN.scan(*AFM, 99), "other")])
+    lines = [spectrum(KNOWN.line(30e-6, 300, seed), f"line {seed}") for seed in (1, 2)]
+    join([*three(), *lines])
+    with pytest.raises(SurfaceError, match="line 1 and copy: show the same place"):
+        join([*three(), lines[0], replace(lines[0], name="copy")])
+
+
+@pytest.mark.parametrize("turned", [np.rot90, np.transpose, np.flipud])
+def test_a_turned_scan_gives_the_same_spectrum(turned):
+    optical, _, fine = three()
+    surface = KNOWN.scan(*AFM, 2)
+    spectra = [
+        join([optical, spectrum(Surface(np.ascontiguousarray(z), surface.grid), "afm"), fine])
+        for z in (surface.height, turned(surface.height))
+    ]
+    assert spectra[1].density == approx(spectra[0].density, rel=1e-9)
+
+
+@pytest.mark.parametrize("slope", [(0.5, -0.2), (0.0, 0.4)])
+def test_tilt_is_no_wave(slope):
+    optical, _, fine = three()
+    surface = KNOWN.scan(*AFM, 2)
+    x, y = surface.grid.x[:, None], surface.grid.y[None, :]
+    tilted = Surface(surface.height + slope[0] * x + slope[1] * y, surface.grid)
+    spectra = [join([optical, spectrum(one, "afm"), fine]) for one in (surface, tilted)]
+    assert spectra[1].density == approx(spectra[0].density, rel=1e-6)
+
+
+@pytest.mark.parametrize("width", [1, 6])
+def test_filled_pixels_are_part_of_the_error(width):
+    """Interpolated pixels have no short waves."""
+    surface = KNOWN.scan(*FINE, 3)
+    rng = np.random.default_rng(2)
+    hole = np.zeros(surface.height.shape, bool)
+    while hole.mean() < 0.15:
+        i, j = rng.integers(0, surface.height.shape[0] - width, 2)
+        hole[i : i + width, j : j + width] = True
+    height = fill_harmonically(np.where(hole, np.nan, surface.height), surface.grid.spacing)
+    told = {"undefined_fraction": float(hole.mean())}
+    less = spectrum(Surface(height, surface.grid, told), "fine")
+    whole, joined = join(three()), join([*three()[:2], less])
+    q = whole.wave_number
+    fine = (whole.at(q) > 0) & (q > 2 * np.pi / 0.5e-6)
+    lost = np.log(joined.density[fine] / whole.density[fine])
+    assert lost.mean() < -0.03
+    assert np.all(np.abs(lost) < 2 * joined.error[fine])
+    assert joined.error[fine].mean() > 0.1 > whole.error[fine].mean()
+    assert any(note.startswith("15% of fine is interpolated") for note in joined.notes)

@@ -87,8 +87,9 @@ def _check_impacts(case: CaseTables, impacts: ImpactsTable) -> None:
             'impacts.place: "track" needs a wall; give second.radius = "flat", or place = "random"'
         )
     if (grid := case.grid.grid()) is not None:
-        hardness = case.yielding().hardness
-        impacts.require_possible(grid, case.impact.series(), case.pair(), hardness)
+        pair = case.pair()
+        hardness = case.yielding().model.of_smooth(pair).hardness
+        impacts.require_possible(grid, case.impact.series(), pair, hardness)
 
 
 def _check_period(case: CaseTables) -> None:

@@ -17,7 +17,8 @@ def deepest_indentation(case: Case) -> float:
 
 def derived_quantities(case: Case, contact: Contact) -> dict[str, float | None]:
     """The derived quantities of `summary.json`, by name and SI unit; None if one does not apply."""
-    pair, p_y = contact.pair, contact.hardness
+    pair, yields = contact.pair, contact.plasticity.of_smooth(contact.pair)
+    p_y = yields.hardness
     if contact.periodic:
         return _of_period(contact)
     deepest = deepest_indentation(case)
@@ -27,7 +28,7 @@ def derived_quantities(case: Case, contact: Contact) -> dict[str, float | None]:
     first = (
         None
         if elastic
-        else FirstYield(pair.radius, pair.contact_modulus, contact.first_yield_pressure)
+        else FirstYield(pair.radius, pair.contact_modulus, yields.first_yield_pressure(pair))
     )
     return {
         "reduced_radius_m": pair.radius,

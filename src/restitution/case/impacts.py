@@ -139,7 +139,7 @@ class ImpactsTable(Table):
             grid: The grid of the surfaces.
             velocities: Those of [impact] (m/s).
             pair: The bodies.
-            hardness: Pressure of a fully plastic contact (Pa).
+            hardness: Pressure of a fully plastic contact of smooth bodies (Pa).
         """
         for V in velocities:
             run_in = self.velocity or [V]

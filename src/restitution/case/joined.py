@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from contextlib import suppress
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, Literal, Self
@@ -32,6 +33,7 @@ from restitution.surfaces import Surface
 from restitution.surfaces.cache import kept
 from restitution.surfaces.joined.join import join
 from restitution.surfaces.joined.read import HowToRead, matching, read_spectra
+from restitution.surfaces.joined.scan_spectrum import ScanSpectrum
 from restitution.surfaces.joined.spectrum import JoinedSpectrum
 from restitution.surfaces.joined.twin import twin_of_scans
 from restitution.surfaces.level import Levelling
@@ -256,11 +258,12 @@ class JoinedRoughness(Table):
 @lru_cache(maxsize=8)
 def _spectrum_of(part: JoinedRoughness, folder: str, _: Stamp) -> JoinedSpectrum:
     with naming(_KEYS):
-        spectra = [
-            spectrum
-            for path, table in part.files(Path(folder))
-            for spectrum in read_spectra(path, table.how)
-        ]
+        spectra: list[ScanSpectrum] = []
+        for path, table in part.files(Path(folder)):
+            for spectrum in read_spectra(path, table.how):
+                known = any(spectrum.name == other.name for other in spectra)
+                name = f"{path.parent.name}/{spectrum.name}" if known else spectrum.name
+                spectra.append(replace(spectrum, name=name))
         if len(spectra) > _MOST_SCANS:
             raise SurfaceError(
                 f"roughness.scans: names {len(spectra)} scans, more than {_MOST_SCANS}; give fewer"

@@ -79,23 +79,25 @@ class Bodies:
                     f'for example density = "2500 kg/m^3" in [{name}]'
                 )
         assert pair.mass is not None  # the loop above checked both densities
-        tables, yielding = tuple(case.bodies().values()), case.yielding()
+        tables, model = tuple(case.bodies().values()), case.yielding().model
+        yields = model.of_smooth(pair)
         # A yield strength of the interface overrides those of the bodies.
         own = case.interface.yield_strength is None
         Y_1, Y_2 = (table.yield_strength if own else None for table in tables)
+        harder = yields.hardness / model.hardness if model.size_effect else 1.0
         radii = [pair.first.radius, pair.second.radius]
         wall = radii.index(math.inf) if math.inf in radii else None
         return cls(
             R=pair.radius,
             E=pair.contact_modulus,
             m=pair.mass,
-            p_y=yielding.hardness,
-            onset=yielding.model.first_yield_pressure(pair),
+            p_y=yields.hardness,
+            onset=yields.first_yield_pressure(pair),
             w=case.interface.adhesive_energy,
             wall=wall,
             equal=pair.first == pair.second and Y_1 == Y_2,
             sphere_poisson=(pair.second if wall == 0 else pair.first).poissons_ratio,
-            strengths=None if Y_1 is None or Y_2 is None else (Y_1, Y_2),
+            strengths=None if Y_1 is None or Y_2 is None else (harder * Y_1, harder * Y_2),
             labels=(tables[0].material or "first", tables[1].material or "second"),
             separation=case.interface.equilibrium_separation,
         )

@@ -87,6 +87,10 @@ class Plasticity(ABC):
         """Largest pressure at which smooth bodies stay elastic (Pa); inf for elastic bodies."""
         return self.hardness
 
+    def of_smooth(self, pair: Pair) -> Plasticity:
+        """The model without size effect by which smooth bodies yield as they do with it."""
+        return self
+
     def onset_pressure(self, pair: Pair) -> float:
         """Pressure (Pa) from which on the model differs from real bodies that yield."""
         return _ONSET * self.hardness
@@ -157,6 +161,10 @@ class Plasticity(ABC):
         """`count` values of `measure` (Pa) up to full plasticity, and their bounds (Pa)."""
         values = np.full(count, self.hardness)
         return values, values
+
+    def hardness_error(self, state: State) -> float:
+        """Relative error of the hardness that contacts as large as in `state` have."""
+        return 0.0
 
     def difference(self, contact: Contact, restitution: float) -> float:
         """Largest relative difference from finite elements, at the COR due to plasticity alone.
@@ -279,6 +287,15 @@ class Adhesion(ABC):
     @abstractmethod
     def separation_of(self, path: list[State]) -> Separation:
         """Energies, pull-off force and error of an unloading `path`."""
+
+    def yielding(self, state: State) -> Iterator[tuple[Contact, float, Array]]:
+        """Contacts in which `state` yields, their indentation (m), and plastic work at nodes (J).
+
+        They are without attraction.
+        """
+        given = state.plastic_displacement
+        work = given * (state.plastic_work / (float(given.sum()) or 1.0))
+        yield replace(state.contact, adhesion=None), state.indentation, work
 
     def attraction_energy(self, state: State) -> float:
         """Energy (J) that the attraction has given to a loaded state, without dissipation."""

@@ -76,6 +76,8 @@ class FamilyLaws:
         slower = (pair.radius / nearest.radius) ** (2 / 3)
         slower *= math.sqrt(nearest.mass / pair.mass)
         how = "computed" if self.has(pair.radius) else "interpolated in R* at equal W/R*^3"
+        harder = self._harder(pair, nearest)
+        faster = math.sqrt(kappa / pair.kappa) * harder**2.5
         law = replace(
             nearest,
             title=self.family.mixture.title or self.family.name,
@@ -84,7 +86,8 @@ class FamilyLaws:
             radius=pair.radius,
             mass=pair.mass,
             model={**nearest.model, "pair": how},
-            yield_velocity=_scaled(nearest.yield_velocity, math.sqrt(kappa / pair.kappa)),
+            yield_pressure=_scaled(nearest.yield_pressure, harder),
+            yield_velocity=_scaled(nearest.yield_velocity, faster),
             smooth_sticking_velocity=_scaled(nearest.smooth_sticking_velocity, slower),
             sticks_below_error=_scaled(nearest.sticks_below_error, slower),
             points=self._points(pair),
@@ -94,6 +97,14 @@ class FamilyLaws:
         below = law.curve().begins() or _scaled(nearest.sticks_below, slower)
         law = replace(law, sticks_below=None if law.sticks_everywhere else below)
         return replace(law, fit=compact_fit(law))
+
+    def _harder(self, pair: ParticlePair, than: Law) -> float:
+        """Ratio of the yield pressures of smooth bodies; their squares are linear in 1/R*."""
+        if than.yield_pressure is None:
+            return 1.0
+        squares = np.array([law.yield_pressure or math.inf for law in self.laws]) ** 2
+        square = np.interp(-1 / pair.radius, -1 / self.radii, squares)
+        return math.sqrt(square / than.yield_pressure**2)
 
     def _points(self, pair: ParticlePair) -> tuple[LawPoint, ...]:
         velocities, curves = self.family.mixture.velocities, self._curves(pair)

@@ -159,7 +159,8 @@ class RunIn:
             CaseError: The velocity is not positive, or a body has no density.
         """
         contact = self._contact
-        area = nominal_area(contact.pair, contact.hardness, velocity)
+        hardness = contact.plasticity.of_smooth(contact.pair).hardness
+        area = nominal_area(contact.pair, hardness, velocity)
         return area / math.prod(contact.grid.size)
 
     @typed

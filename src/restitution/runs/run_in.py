@@ -54,7 +54,8 @@ def require_run_in(case: Case, contact: Contact) -> None:
     """Raise `CaseError` if the surface does not repeat, or the coverages are not possible on it."""
     if case.impacts is None:
         return
-    case.impacts.require_possible(contact.grid, _velocities(case), contact.pair, contact.hardness)
+    hardness = contact.plasticity.of_smooth(contact.pair).hardness
+    case.impacts.require_possible(contact.grid, _velocities(case), contact.pair, hardness)
     if not repeats(contact.surface):
         raise CaseError(
             "roughness.file: opposite edges of the scan do not match, so it does not repeat, as "

@@ -40,6 +40,7 @@ def smooth_curve(
     pair = contact.pair
     if not contact.plasticity.bounds_solve or contact.adhesive or not points:
         return {}
+    contact = replace(contact, plasticity=contact.plasticity.of_smooth(pair))
     depths, onset = _depths(contact, points)
     hertz, elastic = Hertz(pair.radius, pair.contact_modulus), depths <= onset
 
@@ -89,7 +90,7 @@ def _depths(contact: Contact, points: Sequence[Point]) -> tuple[Array, float]:
     least = min(point.loading_work for point in points)
     begin = float(Hertz(R, E_star).indentation_from_energy(least))
     first = min(begin, *(point.indentation for point in points))
-    first_yield = contact.first_yield_pressure
+    first_yield = contact.plasticity.first_yield_pressure(contact.pair)
     onset = math.inf
     if math.isfinite(first_yield):
         onset = float(FirstYield(R, E_star, first_yield).indentation)

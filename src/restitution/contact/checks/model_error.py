@@ -16,6 +16,9 @@ from restitution.contact.state import State
 # largest difference of COR per a/R beyond it if a sphere or a flat body yields
 # (validation/bodies.csv).
 _SHALLOW, _OF_SPHERE, _OF_FLAT = 0.02, 0.33, 0.06
+# Largest d ln COR/d ln hardness (5/8 for fully plastic spheres), and its largest multiple of
+# √(1 − e²) (evidence/size_effect/sensitivity.csv).
+_MOST_GROWTH, _OF_LOSS = 0.65, 1.2
 _STEPS = 0.02  # relative error of the pull-off force due to the steps around the largest tension
 
 
@@ -51,6 +54,7 @@ def _plasticity_error(state: State, restitution: float) -> float:
     returned = stored / (stored + lost) if stored + lost > 0 else 0.0
     due_to_yield = math.sqrt(returned)
     error = contact.plasticity.difference(contact, due_to_yield)
+    error = math.hypot(error, hardness_difference(state, due_to_yield))
     if deeper := depth_difference(state, due_to_yield):
         error += deeper / due_to_yield if due_to_yield else 1.0
     # The error of the model of plasticity changes only the plastic loss of energy, and the adhesive
@@ -61,6 +65,15 @@ def _plasticity_error(state: State, restitution: float) -> float:
         for off in (error, -min(error, 1.0))
     )
     return max(min(high, 1.0) - restitution, restitution - low)
+
+
+def hardness_difference(state: State, restitution: float) -> float:
+    """Largest relative difference of COR due to the error of the hardness of small contacts.
+
+    `restitution` is the COR that plasticity alone would give.
+    """
+    growth = min(_MOST_GROWTH, _OF_LOSS * math.sqrt(max(1 - restitution**2, 0.0)))
+    return growth * state.contact.plasticity.hardness_error(state)
 
 
 def depth_difference(state: State, restitution: float) -> float:

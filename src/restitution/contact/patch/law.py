@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import ClassVar
@@ -33,6 +34,7 @@ from restitution.theory import JKR
 # The unloading branch of patches that yield or jump is known by its energy, not by its tension.
 # This is the error of the energy, as a fraction of the dissipated energy.
 _OF_BRANCH = 0.5
+_INDENTED = 0.5  # of the mean gap: asperities are as sharp at any indentation
 
 
 def flat(pair: Pair) -> Pair:
@@ -114,6 +116,13 @@ class PatchRepulsion(NoAttraction):
         limit, convolutions = model.bound(_without_patches(contact), depth, residual)
         return freeze(self.table.bulk_bound(np.asarray(limit))), convolutions + free.convolutions
 
+    def yielding(self, state: State) -> Iterator[tuple[Contact, float, Array]]:
+        assert isinstance(state, PatchState)
+        bulk = replace(state, plastic_work=state.plastic_work - state.patch_work)
+        for contact, indentation, work in super().yielding(bulk):
+            yield contact, indentation - state.patch_approach, work
+        yield _waves(self.patches[0], contact.pair, state.patch_work)
+
     def with_work(self, state: State, start: State | None) -> State:
         if isinstance(start, PatchState):
             start = replace(start, plastic_work=start.plastic_work - start.patch_work)
@@ -191,6 +200,11 @@ class PatchAttraction(CohesiveLaw):
         assert pair is not None
         model = self.plasticity.of_asperities(pair, 0.5 * pair.contact_modulus * rms_slope(patch))
         return Contact(pair, patch, model, self.attraction, periodic=True)
+
+    def yielding(self, state: State) -> Iterator[tuple[Contact, float, Array]]:
+        yield from super().yielding(state)
+        # How much of the plastic work is that of patches is not known.
+        yield _waves(self.patches[0], state.contact.pair, state.plastic_work)
 
     def grid_finding(self, contact: Contact) -> Finding | None:
         known = all(
@@ -300,6 +314,13 @@ def _on_grid(law: PatchAttraction, contact: Contact) -> BlockLaw:
 @lru_cache(maxsize=4)
 def _without_patches(contact: Contact) -> Contact:
     return replace(contact, adhesion=None)
+
+
+def _waves(patch: Surface, pair: Pair, work: float) -> tuple[Contact, float, Array]:
+    """A patch, its indentation (m), and plastic work at its nodes (J), the same at all."""
+    contact = Contact(flat(pair), patch, periodic=True)
+    share = np.full(patch.grid.nodes, work / patch.height.size)
+    return contact, _INDENTED * float(contact.gap.mean()), share
 
 
 PatchLaw = PatchRepulsion | PatchAttraction

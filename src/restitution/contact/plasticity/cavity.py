@@ -28,7 +28,9 @@ from restitution.contact.plasticity.bound import ConstantBound
 from restitution.contact.plasticity.increments import ChangingBound
 from restitution.contact.plasticity.size_effect import (
     SizedBound,
+    hardness_error,
     strengthening_at,
+    strengthening_of_sphere,
     strengthening_of_waves,
 )
 from restitution.contact.state import Array, State
@@ -120,6 +122,10 @@ class ExpandingCavity(ChangingBound):
         nu = 0.5 * (pair.first.poissons_ratio + pair.second.poissons_ratio)
         return float(yield_coefficient(nu)) * self.yield_strength
 
+    def of_smooth(self, pair: Pair) -> ExpandingCavity:
+        harder = strengthening_of_sphere(self.size_effect, pair.radius)
+        return ExpandingCavity(self.yield_strength * harder, self.tangent_modulus)
+
     def onset_pressure(self, pair: Pair) -> float:
         return self.first_yield_pressure(pair)
 
@@ -174,6 +180,9 @@ class ExpandingCavity(ChangingBound):
         last = first * math.exp((LARGEST - first / self.yield_strength) / GROWTH)
         measure = np.geomspace(first, last, count)
         return measure, self.bound_at(pair, measure)
+
+    def hardness_error(self, state: State) -> float:
+        return hardness_error(self.size_effect, state)
 
     def difference(self, contact: Contact, restitution: float) -> float:
         steepness = contact.pair.contact_modulus * contact.slope / self.yield_strength

@@ -23,6 +23,7 @@ _END = 4  # bands of the shortest waves that show this slope
 _COMPARED = 3  # bands at least, to see a cut-off
 _CONTRADICTION = math.log(2.0)
 _EVIDENT = 3.0  # standard deviations of a contradiction
+_FILLED = 0.02  # fraction of interpolated pixels that is told
 LONGEST = 2.0  # periods in an edge of the longest wave that bridges to the next scan
 
 
@@ -177,11 +178,20 @@ def undecidable(spectra: Sequence[ScanSpectrum]) -> Iterator[str]:
         )
 
 
+def filled(spectra: Sequence[ScanSpectrum]) -> Iterator[str]:
+    for scan in spectra:
+        if scan.filled > _FILLED:
+            yield (
+                f"{scan.filled:.0%} of {scan.name} is interpolated, which lowers its C of short "
+                "waves by about as much"
+            )
+
+
 def differences(
     spectra: Sequence[ScanSpectrum], overlaps: Sequence[Overlap], curve: SpectrumCurve
 ) -> Array:
-    """Error of ln C from differences between scans beyond chance, at the knots of `curve`."""
-    off = dict.fromkeys((scan.name for scan in spectra), 0.0)
+    """Error of ln C at the knots of `curve`: filled pixels, and differences beyond chance."""
+    off = {scan.name: scan.filled for scan in spectra}
     for one in overlaps:
         beyond = 0.5 * math.sqrt(max(math.log(one.ratio) ** 2 - one.error**2, 0.0))
         for name in (one.first, one.second):

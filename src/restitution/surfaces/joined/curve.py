@@ -109,7 +109,7 @@ def fitted_curve(spectra: Sequence[ScanSpectrum]) -> SpectrumCurve:
     parts = [(scan, used_bands(scan, spectra)) for scan in spectra]
     values = [(np.log(scan.density) - scan.bias)[used] for scan, used in parts]
     modes = np.concatenate([scan.modes[used] for scan, used in parts])
-    w = 1 / (1 / modes + 0.5 / modes**2 + CALIBRATION**2)
+    w = 1 / (_variance(modes) + CALIBRATION**2)
     # To begin with, C of a line scan is that of a power law with H = 0.8: C₁·4.6/q.
     wanted = [
         value - (np.log(scan.wave_number[used] / 4.6) if scan.line else 0.0)
@@ -125,6 +125,28 @@ def fitted_curve(spectra: Sequence[ScanSpectrum]) -> SpectrumCurve:
         solved = _solved(np.concatenate(rows), w, np.concatenate(wanted), bends)
         curve = SpectrumCurve(knots, *solved)
     return curve
+
+
+def scatter_of_places(
+    curve: SpectrumCurve, spectra: Sequence[ScanSpectrum], places: Sequence[int]
+) -> Array:
+    """Standard deviation of ln C at the knots between sets of scans of other places.
+
+    Each of the `spectra` is the mean of a number of `places`.
+    """
+    parts = [(scan, used_bands(scan, spectra)) for scan in spectra]
+    rows = np.concatenate([curve.sensitivity(scan, used) for scan, used in parts])
+    modes = np.concatenate(
+        [n * scan.modes[used] for n, (scan, used) in zip(places, parts, strict=True)]
+    )
+    bends = np.diff(np.eye(curve.log_q.size), 2, axis=0) / _BEND
+    w = 1 / (_variance(modes) + CALIBRATION**2)
+    weights = np.linalg.solve(rows.T @ (w[:, None] * rows) + bends.T @ bends, rows.T * w)
+    return np.asarray(np.sqrt((weights**2) @ _variance(modes)))
+
+
+def _variance(modes: Array) -> Array:
+    return 1 / modes + 0.5 / modes**2  # of ln C
 
 
 def _solved(A: Array, w: Array, wanted: Array, bends: Array) -> tuple[Array, Array]:

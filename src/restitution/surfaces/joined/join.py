@@ -16,10 +16,12 @@ from restitution.surfaces.joined.compare import (
     check_gaps,
     compared,
     differences,
+    filled,
     overlaps_of,
     undecidable,
 )
 from restitution.surfaces.joined.curve import fitted_curve, used_bands
+from restitution.surfaces.joined.same_place import check_places
 from restitution.surfaces.joined.scan_spectrum import PER_OCTAVE, ScanSpectrum
 from restitution.surfaces.joined.spectrum import Contribution, JoinedSpectrum
 
@@ -35,7 +37,8 @@ def join(scans: Sequence[ScanSpectrum], *, bridge: bool = False) -> JoinedSpectr
         Joined spectrum.
 
     Raises:
-        SurfaceError: Scans contradict each other by more than a factor of 2, or leave a gap.
+        SurfaceError: Scans contradict each other by more than a factor of 2, leave a gap, or show
+            the same place.
     """
     notes: list[str] = []
     doubts = [
@@ -50,6 +53,7 @@ def join(scans: Sequence[ScanSpectrum], *, bridge: bool = False) -> JoinedSpectr
     )
     if not spectra:
         raise SurfaceError("; ".join(doubts))
+    check_places(spectra)
     check_gaps(spectra, bridge=bridge)
     curve = fitted_curve(spectra)
     spectra = [compared(scan, spectra, curve, notes, doubts) for scan in spectra]
@@ -57,7 +61,7 @@ def join(scans: Sequence[ScanSpectrum], *, bridge: bool = False) -> JoinedSpectr
     curve = fitted_curve(spectra)
     overlaps = tuple(overlaps_of(spectra, curve))
     check_agreement(overlaps)
-    notes += undecidable(spectra)
+    notes += [*undecidable(spectra), *filled(spectra)]
     shortest = min(scan.shortest for scan in spectra)
     longest = max(scan.edge for scan in spectra)
     spread = differences(spectra, overlaps, curve)

@@ -122,6 +122,11 @@ class ScanSpectrum:
         return max(_pixels(self.surface))
 
     @property
+    def filled(self) -> float:
+        """Fraction of interpolated pixels: they have no short waves."""
+        return float(self.surface.provenance.get("undefined_fraction", 0.0))
+
+    @property
     def variance(self) -> float:
         """Mean square height (m²)."""
         return float(np.var(self.surface.height))

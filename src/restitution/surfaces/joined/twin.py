@@ -13,6 +13,7 @@ from restitution.display import quantity
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.surfaces.describe import rms_slope
+from restitution.surfaces.joined.places import scatter_between_places
 from restitution.surfaces.joined.scan_spectrum import ScanSpectrum
 from restitution.surfaces.joined.spectrum import JoinedSpectrum
 from restitution.surfaces.level import level
@@ -118,6 +119,11 @@ def _of_heights(spectrum: JoinedSpectrum, whole: Grid) -> Surface | None:
     return replace(scan.surface, height=scan.surface.height - carried(scan.surface, (cell, cell)))
 
 
+def _between_places(spectrum: JoinedSpectrum, shortest: float, longest: float) -> Iterator[str]:
+    if scatter := list(map(str, scatter_between_places(spectrum, shortest, longest))):
+        yield f"between places of the surface, C scatters by {', '.join(scatter)}"
+
+
 def _unmeasured(spectrum: JoinedSpectrum) -> Iterator[str]:
     low = spectrum.shortest / _FINER
     yield (
@@ -154,6 +160,7 @@ def _provenance(
         f"a statistical twin (seed {seed}) of {len(spectrum.scans)} scans with waves from "
         f"{quantity(spectrum.shortest, 'm')} to {quantity(spectrum.longest, 'm')}",
         *spectrum.notes,
+        *_between_places(spectrum, shortest, longest),
         *_unmeasured(spectrum),
     ]
     if spectrum.longest > longest * (1 + 1e-9):

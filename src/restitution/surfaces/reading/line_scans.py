@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from restitution.display import quantity
 from restitution.errors import SurfaceError, shown
 from restitution.numerics.grid import Grid
 from restitution.surfaces.reading.instrument_files import read_instrument_line
@@ -17,6 +18,7 @@ from restitution.surfaces.surface import Array, Surface
 _LEAST = 16  # points of a line
 _LARGEST_STEP = 20.0  # of neighbouring points, in mean steps; a larger one is a missing part
 _UNDEFINED = 0.2  # largest fraction of undefined points
+_TALLEST = 10.0  # largest span of heights, in lengths of the line
 _SEPARATOR = re.compile(r"[;,\s]+")
 
 
@@ -122,6 +124,13 @@ def _even(path: Path, x: Array, z: Array, size: float | None) -> Surface:
     scale = 1.0 if size is None else size / (n * mean)
     at = x[0] + mean * np.arange(n)
     h = mean * scale
+    if np.ptp(z) > _TALLEST * n * h:
+        raise SurfaceError(
+            f"{path}: its heights span {quantity(float(np.ptp(z)), 'm')} on a line of "
+            f"{quantity(n * h, 'm')}, so positions and heights have different units; give the unit "
+            "of the heights, and the length of the line as size",
+            argument="height_unit",
+        )
     return Surface(
         np.interp(at, x, z)[:, None],
         Grid((n, 1), (h, h)),
