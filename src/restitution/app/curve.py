@@ -60,8 +60,8 @@ class LiveCurves:
         curve = self._curve(least_refined(case, folder), folder)
         yield from curve.previews(self._pace, check)
         ladder, began = curve.ladder, time.perf_counter()
-        if case.grid.refine == "auto":
-            curve = self._curve(with_chosen_grids(case, folder), folder)
+        if (chosen := with_chosen_grids(case, folder)) is not case:
+            curve = self._curve(chosen, folder)
         self._curves.pop(tab, None)
         self._curves[tab] = curve
         if len(self._curves) > _TABS:

@@ -14,13 +14,13 @@ import numpy as np
 
 from restitution.case.roughness_keys import ADHESIVE_CELLS, CELLS, BelowGrid, Stamp
 from restitution.case.tables import CaseTables
-from restitution.contact.checks.resolution import predicted_radius
+from restitution.contact.checks.resolution import divisions, predicted_radius
 from restitution.display import quantity
 from restitution.errors import CaseError, RestitutionError
 from restitution.numerics import memory
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface, refine, rms_slope
-from restitution.surfaces.refine import divided
+from restitution.surfaces.refine import FACTORS, divided
 from restitution.surfaces.split import SplitSurface, cut, long_waves
 
 _LESS = 0.99  # keeps a limit valid that is printed with four digits
@@ -92,10 +92,30 @@ def _where_waves_matter(case: CaseTables, folder: Path) -> Splitting | None:
 
 
 def _on_few_asperities(case: CaseTables, folder: Path) -> bool:
+    return is_on_few_asperities(case, folder, case.depths()[0])
+
+
+def is_on_few_asperities(case: CaseTables, folder: Path, depth: float) -> bool:
+    """Whether a `depth` of the case is so small that errors with patches hold too rarely."""
     if not case.yielding().model.grows:
         return False
     rms = math.hypot(*(part.rms_height(folder) for part in case.roughness))
-    return case.indentation_at(case.depths()[0]) < rms
+    return case.indentation_at(depth) < rms
+
+
+def refines_for_patches(case: CaseTables, folder: Path) -> bool:
+    """Whether the grid of `case` is refined where its contacts are small beside its patches.
+
+    It is if patches are asked for, bodies yield without adhesion, and `refine` and `split` are not
+    given. Finer cells carry more waves of a scan, but no more of a generated surface.
+    """
+    grid = case.grid.grid()
+    if grid is None or "refine" in case.grid.model_fields_set or _choice(case) != "patch":
+        return False
+    if case.interface.adhesive_energy or math.isinf(case.yielding().hardness):
+        return False
+    wanted = None if _given(case) or _adds_waves(case, grid) else _wanted(case, folder)
+    return wanted is not None
 
 
 def _radius(case: CaseTables) -> float:
@@ -108,16 +128,27 @@ def notice_of(case: CaseTables, folder: Path) -> str | None:
     """One line if patches were asked for, but have no waves or an error that holds too rarely."""
     if _choice(case) != "patch":
         return None
-    if _wanted(case, folder) is None:
+    wanted = _wanted(case, folder)
+    if wanted is None:
         return "roughness.below_grid: no waves are below the grid, so nothing is split"
     if not case.interface.adhesive_energy and _on_few_asperities(case, folder):
         return (
             "roughness.below_grid: the smallest indentation is below the rms height; where few "
             "asperities carry a contact and the bound grows, COR with patches can be off by more "
-            'than its error. Use below_grid = "omit" with a larger grid.refine or smaller '
-            "grid.spacing, or only the larger depths"
+            f"than its error. Use {_carrying(case, wanted)}, or only the larger depths"
         )
     return None
+
+
+def _carrying(case: CaseTables, wanted: _Wanted) -> str:
+    """Keys of a grid that carries all waves."""
+    grid = case.grid.grid()
+    assert grid is not None
+    factor = divisions(max(grid.spacing), wanted.cell)
+    if _adds_waves(case, grid) or factor > FACTORS[-1]:
+        return "a smaller grid.spacing"
+    nx, ny = divided(grid, factor).nodes
+    return f"grid.refine = {factor} ({nx} x {ny} nodes)"
 
 
 class _Wanted(NamedTuple):

@@ -34,8 +34,9 @@ Stamp = tuple[int, int] | None
 BelowGrid = Literal["patch", "omit"]
 BELOW_GRID = Key(
     'what happens to waves that the grid does not carry ([two scales](two-scales.md)): `"patch"` '
-    'solves them on periodic patches, whose law the contact uses; `"omit"` leaves them out, and '
-    "the total error includes them",
+    "solves them on periodic patches, whose law the contact uses (dry scans without `refine`: on "
+    'smaller cells where a contact is small beside the patches); `"omit"` leaves them out, and the '
+    "total error includes them",
     default='`"patch"` for generated waves below two cells, and for scans where their waves matter '
     "and bodies do not adhere",
     page=Input("Waves below the grid", more=True, empty="on patches where they matter"),

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from rich.table import Column, Table
 
-from restitution.case.below_grid import notice_of
+from restitution.case.below_grid import notice_of, refines_for_patches
 from restitution.case.case import Case
 from restitution.case.case_file import naming, parse_case, parse_toml, read_text
 from restitution.case.derived import deepest_indentation, derived_quantities
@@ -19,7 +19,7 @@ from restitution.numerics.memory import available, in_words
 from restitution.runs.losses import loss_information, loss_warnings
 from restitution.runs.messages import failure_at_edge, input_warnings, no_range, require_possible
 from restitution.runs.refinement import least_refined
-from restitution.runs.two_scales import cost_in_words
+from restitution.runs.two_scales import REFINED, cost_in_words
 from restitution.surfaces import describe
 from restitution.surfaces.joined.advice import next_measurement
 from restitution.sweeps.sweep import parse_study
@@ -31,7 +31,8 @@ def check(case: Path) -> None:
     with naming(case), errors.status("making the surface"):
         read = least_refined(given, case.parent, warnings.append)
         contact = read.contact(case.parent)
-        table = _table(read, contact, auto=given.grid.refine == "auto")
+        refined = refines_for_patches(read, case.parent)
+        table = _table(read, contact, auto=refined or given.grid.refine == "auto")
     print_numbers(table)
     if information := default_yield(read.yielding().source):
         say(information)
@@ -44,10 +45,12 @@ def check(case: Path) -> None:
         warnings += loss_warnings(read)
         if read.interface.adhesion is None and contact.adhesive:
             warnings += no_range(contact)
-        if (notice := notice_of(read, case.parent)) is not None:
+        if not refined and (notice := notice_of(read, case.parent)) is not None:
             warnings.append(notice)
     if law := law_of_patches(contact):
         say(cost_in_words(law))
+    if refined:
+        say(REFINED)
     for number, part in enumerate(read.roughness, 1):
         if part.kind == "joined":
             before = f"part_{number}_" if len(read.roughness) > 1 else ""

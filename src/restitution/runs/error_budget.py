@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from restitution.case.case import Case
+from restitution.contact.checks.resolution import divisions
 from restitution.curve.columns import Array, array
 from restitution.curve.curve import largest
 from restitution.curve.point import Point
@@ -127,13 +128,15 @@ def error_of_law(scales: ScaleCurves, companions: Companions, points: Sequence[P
     return np.asarray(np.hypot(by_law, scales.separation_error(work, real)))
 
 
-def law_error(change: Array, by_law: Array, work: Array) -> Array:
+def law_error(change: Array, by_law: Array, work: Array, ratio: Array) -> Array:
     """Discretisation error of COR of each point of a contact whose waves are in patches.
 
     No wave is left out, and the law is smooth, so few nodes are enough (docs/two-scales.md).
-    `by_law` is the result of `error_of_law`; for the others see `grid_error`.
+    `by_law` is the result of `error_of_law`, and `ratio` that of `ScaleCurves.split_ratio`; for the
+    others see `grid_error`.
     """
-    return np.asarray(np.sqrt(_smoothed(change**2, work, _NEAR_SURFACE) + by_law**2))
+    near = ratio**2 * _smoothed((change / ratio) ** 2, work, _NEAR_SURFACE)
+    return np.asarray(np.sqrt(near + by_law**2))
 
 
 def widened_error(
@@ -248,7 +251,8 @@ class ErrorBudget:
         change = array(points, "restitution") - companions.own.at(work)
         if scales := companions.scales(self._progress):
             by_law = error_of_law(scales, companions, points)
-            errors, band = law_error(change, by_law, work), np.zeros(work.size)
+            ratio = scales.split_ratio(array(points, "contact_area"))
+            errors, band = law_error(change, by_law, work, ratio), np.zeros(work.size)
         else:
             unseen = unseen_yield(companions, waves, points)
             errors, band = grid_error(change, unseen, work, points, waves.octaves)
@@ -268,17 +272,21 @@ class ErrorBudget:
         return with_pull_off_errors(companions, new, scattered=self._scattered)
 
 
-def band_warning(surface: Surface, band_errors: Sequence[float]) -> Iterator[str]:
-    """Yield a warning if a change of COR due to omitted waves exceeds `MISSING_BAND`."""
+def band_warning(surface: Surface, band_errors: Sequence[float], refine: int = 1) -> Iterator[str]:
+    """Yield a warning if a change of COR due to omitted waves exceeds `MISSING_BAND`.
+
+    `refine` is the factor by which the cells of `surface` are refined.
+    """
     lacking = [error for error in band_errors if error > MISSING_BAND]
     if not lacking:
         return
     band = OmittedWaves.of(surface)
     nodes = [math.ceil(edge / band.pixel) for edge in surface.grid.size]
+    factor = refine * divisions(max(surface.grid.spacing), band.pixel)
     remedy = (
         "such a grid is too large, so use a smaller area, or only the larger depths"
         if nodes[0] * nodes[1] > MOST_AFFORDABLE
-        else "use a smaller grid.spacing or a larger grid.refine"
+        else f"set grid.refine = {factor}, or use a smaller grid.spacing"
     )
     yield (
         f"the grid leaves out waves of the scan with {band.removed_slope:.0%} of its rms slope, "

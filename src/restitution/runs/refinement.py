@@ -7,6 +7,7 @@ import time
 from bisect import bisect_left
 from pathlib import Path
 
+from restitution.case.below_grid import is_on_few_asperities, refines_for_patches
 from restitution.case.case import Case
 from restitution.contact.checks.resolution import (
     NODES_PER_PATCH,
@@ -19,6 +20,7 @@ from restitution.contact.cohesive.law import Cohesive
 from restitution.contact.contact import Contact
 from restitution.contact.interface import interface_of
 from restitution.contact.jkr.limit import JKRLimit
+from restitution.contact.patch.law import law_of_patches
 from restitution.contact.state import State
 from restitution.display import duration, quantity
 from restitution.errors import DomainError, NotConvergedError
@@ -36,6 +38,11 @@ MOST_NODES = 2**24
 # The same for a contact with an attraction of finite range, and its largest number of nodes near
 # the contact, which are solved.
 MOST_COHESIVE_NODES, MOST_SOLVED_NODES = 2**22, 2**20
+# The same for a grid that is refined although `refine` is not given.
+_MOST_IMPLIED = 2**20
+# Radius of the real contact area, divided by the longest wave of its patches, from which the error
+# with patches is small (evidence/two_scales/refined.csv).
+_SEPARATE = 2.0
 # Safety factor on the number of nodes that a patch needs, because other surfaces of an ensemble
 # may have smaller patches.
 _MARGIN = 1.5
@@ -52,19 +59,24 @@ def with_chosen_grids(case: Case, folder: Path, warn: Say = ignore) -> Case:
     finest affordable one, and `warn` is called. Deeper contacts have larger patches, so bisection
     finds the shallowest depth that a grid resolves. In an ensemble, the first surface decides. An
     open model of adhesion becomes `cohesive` if an affordable grid resolves its range.
+
+    With waves in patches that are asked for, a grid that is not given is chosen, too: the coarsest
+    on which the contact is not small beside the patches.
     """
-    if case.grid.refine != "auto":
+    implied = refines_for_patches(case, folder)
+    if case.grid.refine != "auto" and not implied:
         return case
     case = _with_affordable_adhesion(case, folder, warn)
     depths = case.depths()
     factors: list[int] = []  # the factors so far belong to the largest depths
-    level = _Level(case.refined(1), folder)
+    kind = _PatchLevel if implied else _Level
+    level = kind(case.refined(1), folder)
     finest, why = level, ""
     for factor in FACTORS:
         if factor > 1:
             if why := level.beyond(2):
                 break
-            level = _Level(case.refined(factor), folder)
+            level = kind(case.refined(factor), folder)
         finest, why = level, f"{factor} is the largest refine"
         if not level.resolves_range:
             continue
@@ -77,6 +89,12 @@ def with_chosen_grids(case: Case, folder: Path, warn: Say = ignore) -> Case:
     if unresolved:
         warn(finest.unresolved(unresolved, why))
     chosen = [finest.case.grid.factor] * len(unresolved) + factors
+    if implied and max(chosen) > 1:
+        nx, ny = finest.contact.grid.nodes
+        warn(
+            f"roughness.below_grid: the grid was refined up to {max(chosen)} times ({nx} x {ny} "
+            "nodes), because the contact was small beside the patches; grid.refine = 1 keeps it"
+        )
     return case.refined(chosen[0] if len(set(chosen)) == 1 else tuple(chosen))
 
 
@@ -110,6 +128,7 @@ def with_chosen_adhesion(case: Case, contact: Contact, warn: Say = ignore) -> Ca
 class _Level:
     def __init__(self, case: Case, folder: Path) -> None:
         self.case, self.contact = case, case.realisation(0).contact(folder)
+        self._folder = folder
         self._states: dict[float, State | None] = {}
         self._seconds = 0.0
 
@@ -127,7 +146,10 @@ class _Level:
             state = self._state(depth)
         except DomainError:  # the contact reaches the edge; the run will report this
             return True
-        return state is not None and _has_patches(state) and resolves_adhesion(state)
+        return state is not None and self._is_fine(state)
+
+    def _is_fine(self, state: State) -> bool:
+        return _has_patches(state) and resolves_adhesion(state)
 
     def beyond(self, times: int) -> str:
         """Why cells smaller by the factor `times` are not affordable; empty if they are."""
@@ -142,15 +164,21 @@ class _Level:
         return wide if self.case.run_bytes(grid) > available() else ""
 
     def unresolved(self, depths: list[float], why: str) -> str:
-        key = self.case.prescribed
-        first, last = (quantity(depth, _UNITS[key]) for depth in (depths[0], depths[-1]))
-        where = f"at {first}" if first == last else f"from {first} to {last}"
-        name = "velocity" if key == "impact" else key
         return (
             f'grid.refine = "auto" stopped at {self.case.grid.factor} ({why}). This grid does not '
-            f"resolve the contact {where}: {'; '.join(self._reasons(depths))}; begin with a larger "
-            f"{name}, or leave out short waves (roughness.shortest)"
+            f"resolve the contact {self._where(depths)}: {'; '.join(self._reasons(depths))}; begin "
+            f"with a larger {self._name}, or leave out short waves (roughness.shortest)"
         )
+
+    def _where(self, depths: list[float]) -> str:
+        unit = _UNITS[self.case.prescribed]
+        first, last = (quantity(depth, unit) for depth in (depths[0], depths[-1]))
+        return f"at {first}" if first == last else f"from {first} to {last}"
+
+    @property
+    def _name(self) -> str:
+        key = self.case.prescribed
+        return "velocity" if key == "impact" else key
 
     def _reasons(self, depths: list[float]) -> list[str]:
         states = [state for depth in depths if (state := self._states.get(depth)) is not None]
@@ -194,6 +222,32 @@ class _Level:
                 self._states[depth] = None
             self._seconds += time.perf_counter() - began
         return self._states[depth]
+
+
+class _PatchLevel(_Level):
+    """A grid without adhesion beside whose contacts the patches must be small."""
+
+    def resolves(self, depth: float) -> bool:
+        if law_of_patches(self.contact) is None:
+            return True  # the grid carries all waves
+        few = is_on_few_asperities(self.case, self._folder, depth)
+        return not few and super().resolves(depth)
+
+    def _is_fine(self, state: State) -> bool:
+        law = law_of_patches(self.contact)
+        radius = math.sqrt(state.contact_area / math.pi)
+        return law is None or radius >= _SEPARATE * law.wavelength
+
+    def beyond(self, times: int) -> str:
+        nx, ny = divided(self.contact.grid, times).nodes
+        return f"the next grid would have {nx} x {ny} nodes" if nx * ny > _MOST_IMPLIED else ""
+
+    def unresolved(self, depths: list[float], why: str) -> str:
+        return (
+            f"roughness.below_grid: the contact is small beside the patches {self._where(depths)}, "
+            f"where COR has a large error; the grid was refined {self.case.grid.factor} times "
+            f"({why}). Begin with a larger {self._name}, or set a larger grid.refine"
+        )
 
 
 def _has_patches(state: State) -> bool:

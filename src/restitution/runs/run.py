@@ -54,7 +54,7 @@ from restitution.runs.result_warnings import (
 from restitution.runs.run_in import require_run_in, run_in
 from restitution.runs.size_effect import left_out
 from restitution.runs.smooth import smooth_curve
-from restitution.runs.two_scales import patch_curve, solve_patches, told
+from restitution.runs.two_scales import patch_curve, solve_patches, told, too_small_for_patches
 from restitution.surfaces import describe
 
 CONVENTIONS = {
@@ -118,10 +118,10 @@ def run_case(
     with run.record(
         out, lambda: _write_results(case, text, out, run, run.deepest) if run.deepest else {}
     ):
-        case = with_chosen_grids(case, folder, run.warn)
+        given, case = case, with_chosen_grids(case, folder, run.warn)
         contact = case.contact(folder)
         require_run_in(case, contact)
-        if (notice := notice_of(case, folder)) is not None:
+        if case.grid == given.grid and (notice := notice_of(case, folder)) is not None:
             run.warn(notice)
         solve_patches(contact, run.progress)
         case = with_chosen_adhesion(case, contact, run.warn)
@@ -299,7 +299,8 @@ def _result_warnings(case: Case, contact: Contact, out: ResultsFolder, run: _Run
     points = out.curve.points
     yield from unresolved(points)
     yield from too_coarse_for_adhesion(case, contact.grid, points, run.seconds)
-    yield from band_warning(contact.surface, run.band_errors)
+    yield from band_warning(contact.surface, run.band_errors, case.grid.factor)
+    yield from too_small_for_patches(case, contact, points)
     if run.errors:
         yield from interrupted_errors(case, points, run.status)
     yield from imprecise(points, case)

@@ -2,18 +2,36 @@
 
 from __future__ import annotations
 
+import math
 import time
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
 
+from restitution.case.case import Case
+from restitution.contact.checks.resolution import divisions
 from restitution.contact.contact import Contact
 from restitution.contact.patch.law import PatchLaw, law_of_patches
-from restitution.display import duration, quantity
+from restitution.curve.point import Point
+from restitution.display import counted, duration, quantity
+from restitution.numerics.grid import Grid
 from restitution.runs.log import Say, ignore
+from restitution.runs.refinement import MOST_NODES
+from restitution.surfaces.refine import FACTORS, divided
 
 _DRAWN = 400  # points of a drawn law
 _LONG = 0.05  # time (s) from which a patch counts as solved now
+
+
+REFINED = (
+    "The grid is refined where the contact is small beside the patches, up to 2²⁰ nodes; "
+    "grid.refine = 1 keeps it."
+)
+
+# Errors of COR above this are told, with a grid on which they are smaller. They are proportional to
+# the longest wave of the patches, which should be at most this fraction of the contact radius.
+_WIDE, _LONGEST = 0.05, 0.5
 
 
 def solve_patches(contact: Contact, progress: Say = ignore) -> None:
@@ -68,3 +86,46 @@ def cost_in_words(law: PatchLaw) -> str:
         f"Waves below {quantity(law.wavelength, 'm')} are computed on {len(law.patches)} periodic "
         f"patches of {nx} x {ny} nodes, in about {duration(seconds)} the first time."
     )
+
+
+def too_small_for_patches(case: Case, contact: Contact, points: Sequence[Point]) -> Iterator[str]:
+    """Yield a warning if the contact is small beside dry patches, with a grid and its error."""
+    law, grid = law_of_patches(contact), case.grid.grid()
+    if law is None or law.attracts or grid is None or not isinstance(case.grid.refine, int):
+        return
+    wide = [
+        point
+        for point in points
+        if point.discretisation_error > _WIDE and 0 < _LONGEST * _radius(point) < law.wavelength
+    ]
+    if not wide:
+        return
+    largest = max(point.discretisation_error for point in wide)
+    times = divisions(law.wavelength, _LONGEST * min(map(_radius, wide)))
+    if (keys := _finer(case, grid, times)) is None:
+        return
+    yield (
+        "the radius of the real contact area is below two wavelengths of the patches "
+        f"({quantity(law.wavelength, 'm')}) at {len(wide)} of {counted(len(points), 'depth')}, "
+        f"where the error of COR by the grid is up to {largest:.2g}; with {keys}, it would be "
+        f"about {largest / times:.1g}"
+    )
+
+
+def _finer(case: Case, grid: Grid, times: int) -> str | None:
+    """Keys of a grid with cells smaller by the factor `times`; None if it has too many nodes."""
+    factor = times * case.grid.factor
+    nx, ny = divided(grid, factor).nodes
+    if nx * ny > MOST_NODES or factor > FACTORS[-1]:
+        return None
+    if any(part.split for part in case.roughness):
+        return "a shorter roughness.split"
+    if any(part.needs_patches(grid) for part in case.roughness):
+        finer = divided(grid, times)
+        (nx, ny), spacing = finer.nodes, quantity(min(finer.spacing), "m")
+        return f'grid.nodes = [{nx}, {ny}] and grid.spacing = "{spacing}"'
+    return f"grid.refine = {factor} ({nx} x {ny} nodes)"
+
+
+def _radius(point: Point) -> float:
+    return math.sqrt(point.contact_area / math.pi)
