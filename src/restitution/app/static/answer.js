@@ -48,19 +48,20 @@ export function drawAnswer() {
 
 // e with its error, and as many digits as the error allows.
 function inDigits({ restitution, total_error: error }, curve) {
-  if (curve.preview || curve.partial) return `e ≈ ${restitution.toFixed(2)}`;
+  if (curve.preview) return withDigits(restitution, error, "≈");
+  if (curve.partial) return `e ≈ ${restitution.toFixed(2)}`;
   if (error === null || !curve.errors) return `e = ${restitution.toFixed(3)}`;
   return withDigits(restitution, error);
 }
 
-function withDigits(restitution, error) {
-  if (error === null || error === undefined) return `e = ${restitution.toFixed(3)}`;
+function withDigits(restitution, error, is = "=") {
+  if (error === null || error === undefined) return `e ${is} ${restitution.toFixed(3)}`;
   const places = Math.min(4, Math.max(2, error > 0 ? Math.ceil(-Math.log10(error)) : 2));
-  return `e = ${restitution.toFixed(places)} ± ${Math.max(error, 10 ** -places).toFixed(places)}`;
+  return `e ${is} ${restitution.toFixed(places)} ± ${Math.max(error, 10 ** -places).toFixed(places)}`;
 }
 
 function detail({ total_error: error, model_error: model }, curve) {
-  const kind = curve.preview ? "A preview; the exact curve follows. " : curve.partial ? "The curve is not complete yet. "
+  const kind = curve.preview ? "A preview with the error that is usual on its cells. " : curve.partial ? "The curve is not complete yet. "
     : error === null || !curve.errors ? "The error is not known yet. " : `The error is that ${curve.errors}. `;
   return [kind, model > 0 ? `The choice of the model may change e by another ± ${model.toPrecision(1)}.` : ""];
 }
@@ -107,7 +108,11 @@ function attraction(V) {
   if (below > 0) sticks = `below ${withError(below, error, "m/s")}`;
   else if (below === 0) sticks = error > 0 ? `not above ${quantity(error, "m/s", 2)}` : "at no velocity";
   else if (rows.every((one) => one.sticks)) sticks = "at every computed velocity";
-  else if (first > 0) sticks = `below about ${quantity(between.velocity[first], "m/s", 2)}`;
+  else if (first > 0) {
+    const next = rows.findIndex((one) => one.restitution > 0);
+    const [low, high] = [next - 1, next].map((k) => rows[k] && quantity(rows[k].impact_velocity_m_per_s, "m/s", 2));
+    sticks = `below about ${quantity(between.velocity[first], "m/s", 2)}${low && high ? ` (computed: ${low} sticks, ${high} rebounds)` : ""}`;
+  }
   const force = row && row.pull_off_force_N > 0 ? `${withError(row.pull_off_force_N, row.pull_off_error_N, "N")}, after ${quantity(row.impact_velocity_m_per_s, "m/s", 2)}` : "unknown";
   return [["Sticks", sticks], ["Pull-off force", force]];
 }

@@ -71,11 +71,12 @@ def load_until(
     start: State | None,
     residual: float,
     scale: float = 0.0,
+    accuracy: float = ACCURACY,
 ) -> tuple[CohesiveState, CohesiveState]:
     """Return the last state of loading that is not `reached`, and the first state that is.
 
     If it is true at the beginning, both are this state. `ahead` estimates the distance (m) that is
-    left from a state and the stiffness there (N/m). `scale` is that of `follow`.
+    left from a state and the stiffness there (N/m). `scale` and `accuracy` are those of `follow`.
     """
     before = _on_the_way(start, reached)
     if before is None:
@@ -89,7 +90,8 @@ def load_until(
             stiffness = before.force - before.before.force
             stiffness /= before.indentation - before.before.indentation
             way = min(way, max(_BEYOND * ahead(before, stiffness), _ONWARD * z0))
-        for state in follow(before, before.indentation + way, residual=residual, scale=scale):
+        end = before.indentation + way
+        for state in follow(before, end, residual=residual, scale=scale, accuracy=accuracy):
             if reached(state):
                 return before, state
             before = state

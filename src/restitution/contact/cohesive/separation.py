@@ -53,7 +53,8 @@ def _separating(
     loaded, scale = state, reference_energy(state, loading=False)
     options = {"residual": _RESIDUAL, "accuracy": accuracy, "scale": scale}
     state = replace(state, is_first_loading=False, before=None)
-    if accuracy >= ACCURACY:  # otherwise the steps of loading are too long
+    # Otherwise the steps of loading are too long.
+    if accuracy >= law_of(loaded.contact).work_tolerance:
         for earlier in _branch(loaded):
             state = _reversed(loaded, earlier)
             tension = max(tension, -state.force)
