@@ -88,7 +88,7 @@ function modelBand({ rows }, between, key, scale) {
   const x = between ? between.velocity : known.map((row) => scale * row[key]);
   const e = between ? between.quasi_static : known.map((row) => row.restitution);
   const model = between ? between.model_error : known.map((row) => row.model_error);
-  const edge = (sign) => ({ type: "scatter", mode: "lines", hoverinfo: "skip", x, y: e.map((value, k) => Math.min(1, Math.max(0, value + sign * model[k]))) });
+  const edge = (sign) => ({ type: "scatter", mode: "lines", hoverinfo: "skip", meta: "wide", x, y: e.map((value, k) => Math.min(1, Math.max(0, value + sign * model[k]))) });
   const colour = matchMedia("(prefers-color-scheme: dark)").matches ? DARK_MODEL : MODEL;
   return [
     { ...edge(-1), showlegend: false },
