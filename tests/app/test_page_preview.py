@@ -49,7 +49,8 @@ def test_a_preview_says_what_it_is(adhesive):
     expect(page.locator("#status")).to_have_text(PREVIEW)
     expect(legend(page).filter(has_text=PREVIEW)).to_have_count(1)
     expect(legend(page).filter(has_text="this contact")).to_have_count(0)
-    expect(page.locator("#cursor-text")).to_contain_text("preview")
+    expect(page.locator("#cursor-text")).to_contain_text(re.compile(r" ± .* preview"))
+    expect(legend(page).filter(has_text="usual error of such a preview")).to_have_count(1)
     expect(page.locator("#cor")).to_have_attribute("aria-label", re.compile("^Preview of the"))
     assert len(table(page, "numbers")) == 3
 

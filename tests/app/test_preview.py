@@ -219,3 +219,17 @@ def test_times_of_other_curves_do_not_count(tmp_path):
     clock.drawn()
     clock.ladder = ladder_of(JKR, tmp_path)
     assert clock.pace.first(clock.ladder) == 0
+
+
+@pytest.mark.parametrize("text", [DRY, IMPACT, JKR, COHESIVE], ids=["dry", "impact", "jkr", "far"])
+def test_the_error_of_a_preview_covers_its_difference_from_the_curve(tmp_path, monkeypatch, text):
+    monkeypatch.setattr("restitution.app.preview._SOON", 0.0)
+    monkeypatch.setattr("restitution.app.preview._WORTH_WAITING", 0.0)
+    ladder = ladder_of(text, tmp_path)
+    *partial, last = lines(text, tmp_path, LiveCurves())
+    previews = [line["curve"] for line in partial if line.get("preview") and not line["progress"]]
+    exact = dict(zip(ladder.case.depths(), last["curve"], strict=True))
+    assert len(previews) == len(ladder.levels) - 1
+    for level, rows in zip(ladder.levels, previews, strict=False):
+        for depth, row in zip(level.depths, rows, strict=True):
+            assert abs(row["restitution"] - exact[depth]["restitution"]) <= row["total_error"] < 1

@@ -396,3 +396,12 @@ def test_separation_does_not_depend_on_the_length_of_the_steps(monkeypatch):
         monkeypatch.setattr(cohesive_steps, name, value)
     found.append(separation_of([*unloading_path(state)]).separation_indentation)
     assert found[0] == approx(found[1], abs=0.01 * Z0)
+
+
+def test_loading_with_a_larger_tolerance_takes_fewer_solves_and_comes_near():
+    fine = sphere(1.0, 12.0, rough=0.5, yield_pressure=4e9)
+    coarse = replace(fine, adhesion=fine.adhesion.with_work_tolerance(0.04))
+    ends = [solve(contact, 12 * Z0) for contact in (fine, coarse)]
+    assert ends[1].convolutions < 0.6 * ends[0].convolutions
+    assert ends[1].loading_work == approx(ends[0].loading_work, rel=0.03)
+    assert ends[1].loading_work != ends[0].loading_work

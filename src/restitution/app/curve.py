@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -145,7 +146,7 @@ class _Curve:
                 yield self.line(points, "", preview=words)
 
     def _points(self, level: Level, check: Callable[[], None]) -> Iterator[Point]:
-        """The points of a preview; depths that fail are left out."""
+        """The points of a preview with their usual errors; depths that fail are left out."""
 
         def fail(_: RestitutionError) -> bool:
             check()
@@ -154,7 +155,7 @@ class _Curve:
         try:
             for impact in follow(self.ladder.loads(level), self.ladder.unloading, fail):
                 check()
-                yield impact.point
+                yield replace(impact.point, total_error=self.ladder.usual_error(impact))
         except RestitutionError:  # the curve of the case reports it, or does without it
             return
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from base64 import b64encode
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -32,7 +33,7 @@ class Raw(str):
 
 
 def as_json(content: Mapping[str, Any]) -> str:
-    """Format `content` as one line of JSON; NaN and infinity become null."""
+    """Format `content` as one line of JSON; NaN and infinity become null, arrays base64 text."""
     parts = [
         f"{json.dumps(key)}: "
         + (value if isinstance(value, Raw) else json.dumps(_finite(value), allow_nan=False))
@@ -46,6 +47,9 @@ def _finite(value: Any) -> Any:
         return {key: _finite(inner) for key, inner in value.items()}
     if isinstance(value, list | tuple):
         return [_finite(inner) for inner in value]
+    if isinstance(value, np.ndarray):
+        array = np.ascontiguousarray(value, dtype=np.float64)
+        return {"dtype": "f8", "bdata": b64encode(array.tobytes()).decode()}
     if isinstance(value, np.generic):
         value = value.item()
     return None if isinstance(value, float) and not math.isfinite(value) else value
@@ -68,7 +72,10 @@ def curve_figures(results: xr.Dataset) -> Raw:
 
 def drawing(figure: Figure) -> Raw:
     """Convert the first panel of `figure` to JSON for the plotting library."""
-    return Raw(interactive.draw(figure.panels[0], figure).to_json())
+    panel = figure.panels[0]
+    if isinstance(panel, Map):  # whose colours the library in the browser does not know by name
+        return Raw(interactive.draw(panel, figure).to_json())
+    return Raw(as_json(interactive.contents(panel, figure)))
 
 
 def surface_content(surface: Surface) -> dict[str, Any]:

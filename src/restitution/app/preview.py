@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from statistics import median_low
 from typing import Any
 
 import numpy as np
@@ -13,16 +14,19 @@ import numpy as np
 from restitution.case.case import Case
 from restitution.contact.checks.resolution import NODES_PER_RADIUS, predicted_radius
 from restitution.contact.contact import Contact
-from restitution.curve.follow import Load, Unloading
+from restitution.contact.interface import interface_of
+from restitution.curve.follow import Impact, Load, Unloading
 from restitution.display import quantity
 from restitution.runs.companions import coarser_contact
 from restitution.runs.depths import CaseUnloading, first_touch, load_to
+from restitution.runs.error_budget import usual_grid_error
+from restitution.surfaces import rms_slope
 from restitution.theory import JKR
 
 _FEWEST_NODES, _FEWEST_DEPTHS = 32, 3  # of the coarsest level, along an edge of the grid
 _FEWEST_PER_RADIUS = 4  # nodes in the radius of a contact with the fewest depths
 _PER_ATTRACTION = 2.0  # how much larger a contact counts that attraction alone makes
-_ERROR = 0.02  # error of COR that previews accept from unloading and loading, each
+_UNLOADING, _LOADING = 0.05, 0.02  # errors of COR that previews accept from the steps of each
 
 # Time (s) of solving for which the page waits rather than draw a coarser level first: a curve
 # should follow a slider within 0.3 s, and takes 0.1 s to be drawn.
@@ -50,10 +54,11 @@ class Ladder:
     def __init__(self, case: Case, contact: Contact) -> None:
         if contact.adhesion is not None:
             # The relative error of COR is half that of the work.
-            rough = contact.adhesion.with_work_tolerance(2 * _ERROR)
+            rough = contact.adhesion.with_work_tolerance(2 * _LOADING)
             contact = replace(contact, adhesion=rough)
         # The contact on cells that are larger by the factors 1, 2, 4, …
         self.case, self._contacts = case, [contact]
+        self._slopes: dict[tuple[float, float], float] = {}  # rms slopes, by the size of the cells
         deep = {depth: case.indentation_at(depth) for depth in case.depths()}
         cell, pair, limit = max(contact.grid.spacing), contact.pair, contact.hardness
         # The nodes in the predicted radius of the contact at each depth. Adhesion widens shallow
@@ -88,7 +93,7 @@ class Ladder:
     def unloading(self) -> Unloading:
         """How a preview is unloaded."""
         given = CaseUnloading.of_case(self.case)
-        return replace(given, tolerance=max(given.tolerance, _ERROR))
+        return replace(given, tolerance=max(given.tolerance, _UNLOADING))
 
     def words(self, level: Level) -> str:
         """What the preview `level` is."""
@@ -110,13 +115,32 @@ class Ladder:
             if to > 0:
                 yield Load(contact, partial(load_to, self.case, contact, to), depth, 1, touch)
 
+    def usual_error(self, impact: Impact) -> float:
+        """Error of COR to expect of a preview.
+
+        It is that of the steps, that which is usual with as many nodes in the median patch, and
+        the share of the loss 1 − e that corresponds to the slope which larger cells leave out.
+        """
+        point, own = impact.point, self._slope(self._contacts[0])
+        left = self._slope(impact.load.contact) / own if own else 1.0
+        omitted = max(0.0, 1 - left) * (1 - point.restitution)
+        return math.hypot(point.restitution_error, usual_grid_error(point), omitted)
+
     def _level(self, count: int, largest: int) -> Level:
         depths = list(self._nodes)
         numbers = np.unique(np.linspace(0, len(depths) - 1, count).round().astype(int))
         chosen = tuple(depths[number] for number in numbers)
         left = NODES_PER_RADIUS if count > _FEWEST_DEPTHS else _FEWEST_PER_RADIUS
-        ratios = (max(1.0, self._nodes[depth] / left) for depth in chosen)
+        ratios = [max(1.0, self._nodes[depth] / left) for depth in chosen]
+        if interface_of(self._contacts[0]).follows_path:  # on other cells a path begins again
+            ratios = [median_low(ratios)] * len(ratios)
         return Level(chosen, tuple(min(largest, 2 ** int(math.log2(ratio))) for ratio in ratios))
+
+    def _slope(self, contact: Contact) -> float:
+        cells = contact.grid.spacing
+        if cells not in self._slopes:
+            self._slopes[cells] = rms_slope(contact.surface)
+        return self._slopes[cells]
 
     def _coarser(self, factor: int) -> Contact:
         """The contact on cells `factor` times as large, a power of two."""

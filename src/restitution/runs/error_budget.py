@@ -348,11 +348,16 @@ def steps(case: Case) -> int:
     return 1 + surfaces + int(joined) + int(case.has_library_values())
 
 
+def usual_grid_error(point: Point) -> float:
+    """Error of COR that 90 % of contacts with as many nodes in the median patch do not exceed."""
+    nodes = math.log(max(point.median_patch_nodes, 1.0))
+    return math.exp(np.interp(nodes, np.log(_PATCH_NODES), np.log(_PATCH_ERROR)))
+
+
 def _floor(point: Point) -> float:
     """Minimum discretisation error: the usual error for this number of nodes, times `_SHARE`."""
     nodes = max(point.median_patch_nodes, 1.0)
-    expected = math.exp(np.interp(math.log(nodes), np.log(_PATCH_NODES), np.log(_PATCH_ERROR)))
-    return expected * float(np.interp(nodes, _FEW_NODES, _SHARE))
+    return usual_grid_error(point) * float(np.interp(nodes, _FEW_NODES, _SHARE))
 
 
 def _smoothed(values: Array, work: Array, near: float) -> Array:

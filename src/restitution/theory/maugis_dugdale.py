@@ -13,7 +13,7 @@ from ._roots import increasing_root
 # 1.15, its value in the JKR limit.
 _LARGEST_RADIUS = 2.0
 _GOLDEN = 0.5 * (5**0.5 - 1)
-_SECTIONS = 60  # number of steps of the golden-section search for the pull-off force
+_SECTIONS = 40  # steps of the golden-section search for the pull-off force: ā to 1e-8
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,12 +65,18 @@ class MaugisDugdale(PositiveFields):
         parameter = np.asarray(self.transition_parameter)
         low = np.full_like(parameter, 1e-4)
         high = np.full_like(parameter, _LARGEST_RADIUS)
+        a, b = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
+        at_a, at_b = _force(a, parameter), _force(b, parameter)
         for _ in range(_SECTIONS):
-            a, b = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
-            left = _force(a, parameter) < _force(b, parameter)
+            left = at_a < at_b
             low, high = np.where(left, low, a), np.where(left, b, high)
+            way = _GOLDEN * (high - low)
+            new = np.where(left, high - way, low + way)
+            at_new = _force(new, parameter)
+            a, b = np.where(left, new, b), np.where(left, a, new)
+            at_a, at_b = np.where(left, at_new, at_b), np.where(left, at_a, at_new)
         unit = np.pi * self.work_of_adhesion * self.radius
-        return scalar_or_array(-unit * _force(0.5 * (low + high), parameter))
+        return scalar_or_array(-unit * np.minimum(at_a, at_b))
 
 
 def _force(a: Array, parameter: Array) -> Array:

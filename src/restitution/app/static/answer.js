@@ -34,33 +34,44 @@ const rounded = (value) => Number(value.toPrecision(1));
 
 export function drawAnswer() {
   const { curve } = state, { between } = curve;
-  if (!typed && between) {
+  if (!typed && between && !curve.partial) {
     const V = between.velocity, low = V[0], high = V[V.length - 1];
     const inside = FIRST >= low && FIRST <= high * (1 + NEAR) ? FIRST : Math.max(low, Math.min(high, rounded(0.5 * high)));
     $("answer-velocity").value = quantity(inside, "m/s", 3);
   }
   const V = answerVelocity(), here = at(V, between);
   $("answer-velocity").setAttribute("aria-invalid", String(V === null));
-  $("answer-value").textContent = here ? inDigits(here, curve) : "e = –";
+  $("answer-value").textContent = here ? inDigits(V, here, curve) : "e = –";
   $("answer-detail").replaceChildren(...(here ? detail(here, curve) : outside(V, between)));
   $("answer-facts").replaceChildren(...facts(V, here).flatMap(([name, ...values]) => [element("dt", {}, name), element("dd", {}, ...values)]));
 }
 
 // e with its error, and as many digits as the error allows.
-function inDigits({ restitution, total_error: error }, curve) {
-  if (curve.preview || curve.partial) return `e ≈ ${restitution.toFixed(2)}`;
+function inDigits(V, { restitution, total_error: error }, curve) {
+  if (curve.preview) {
+    const [sticks, rebounds] = onset(curve.rows);
+    if (sticks && V > sticks.impact_velocity_m_per_s && V < rebounds.impact_velocity_m_per_s) return `e ≈ 0 to ${rebounds.restitution.toFixed(2)}`;
+    return withDigits(restitution, error, "≈");
+  }
+  if (curve.partial) return `e ≈ ${restitution.toFixed(2)}`;
   if (error === null || !curve.errors) return `e = ${restitution.toFixed(3)}`;
   return withDigits(restitution, error);
 }
 
-function withDigits(restitution, error) {
-  if (error === null || error === undefined) return `e = ${restitution.toFixed(3)}`;
+// The last row that sticks and the first that rebounds, if there are both.
+function onset(rows) {
+  const next = rows.findIndex((row) => row.restitution > 0);
+  return next > 0 ? [rows[next - 1], rows[next]] : [];
+}
+
+function withDigits(restitution, error, is = "=") {
+  if (error === null || error === undefined) return `e ${is} ${restitution.toFixed(3)}`;
   const places = Math.min(4, Math.max(2, error > 0 ? Math.ceil(-Math.log10(error)) : 2));
-  return `e = ${restitution.toFixed(places)} ± ${Math.max(error, 10 ** -places).toFixed(places)}`;
+  return `e ${is} ${restitution.toFixed(places)} ± ${Math.max(error, 10 ** -places).toFixed(places)}`;
 }
 
 function detail({ total_error: error, model_error: model }, curve) {
-  const kind = curve.preview ? "A preview; the exact curve follows. " : curve.partial ? "The curve is not complete yet. "
+  const kind = curve.preview ? "A preview with the error that is usual on its cells. " : curve.partial ? "The curve is not complete yet. "
     : error === null || !curve.errors ? "The error is not known yet. " : `The error is that ${curve.errors}. `;
   return [kind, model > 0 ? `The choice of the model may change e by another ± ${model.toPrecision(1)}.` : ""];
 }
@@ -69,6 +80,7 @@ function outside(V, between) {
   if (V === null) return ["Type a velocity with its unit, such as 0.5 m/s or 20 mm/s."];
   if (!between) return [get("depths") === "impact" ? "No velocity is computed yet." : "No impact velocity is known: give the densities."];
   const [low, high] = [between.velocity[0], between.velocity[between.velocity.length - 1]];
+  if (state.curve.partial) return [`Computed up to ${quantity(high, "m/s", 3)} so far.`];
   const words = `Computed from ${quantity(low, "m/s", 3)} to ${quantity(high, "m/s", 3)}; nothing is extrapolated. `;
   return [words, button("Compute this velocity too", () => {
     if (get("depths") !== "impact") choose("depths", "impact");
@@ -99,15 +111,18 @@ function worn(V, here) {
 }
 
 function attraction(V) {
-  const { sticking, between, rows } = state.curve;
+  const { sticking, between, rows, partial } = state.curve;
   const row = V ? nearest(V) : null;
   const below = sticking.sticks_below_m_per_s, error = sticking.sticks_below_error_m_per_s;
   const first = between ? between.restitution.findIndex((e) => e > 0) : -1;
   let sticks = "not in the computed range";
   if (below > 0) sticks = `below ${withError(below, error, "m/s")}`;
   else if (below === 0) sticks = error > 0 ? `not above ${quantity(error, "m/s", 2)}` : "at no velocity";
-  else if (rows.every((one) => one.sticks)) sticks = "at every computed velocity";
-  else if (first > 0) sticks = `below about ${quantity(between.velocity[first], "m/s", 2)}`;
+  else if (rows.every((one) => one.sticks)) sticks = partial ? `at ${quantity(rows[rows.length - 1].impact_velocity_m_per_s, "m/s", 2)}; faster impacts follow` : "at every computed velocity";
+  else if (first > 0) {
+    const [low, high] = onset(rows).map((one) => quantity(one.impact_velocity_m_per_s, "m/s", 2));
+    sticks = `below about ${quantity(between.velocity[first], "m/s", 2)}${low && high ? ` (computed: ${low} sticks, ${high} rebounds)` : ""}`;
+  }
   const force = row && row.pull_off_force_N > 0 ? `${withError(row.pull_off_force_N, row.pull_off_error_N, "N")}, after ${quantity(row.impact_velocity_m_per_s, "m/s", 2)}` : "unknown";
   return [["Sticks", sticks], ["Pull-off force", force]];
 }

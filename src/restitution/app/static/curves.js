@@ -9,6 +9,8 @@ import { digits, quantity, withError } from "./units.js";
 
 const KEYS = { velocity: "impact_velocity_m_per_s", indentation: "max_indentation_m" };
 const MODEL = "#8250df", DARK_MODEL = "#c297ff"; // colour of the band of the error of the model
+const NEXT = 30; // time (ms) from the curve to the figure below it, so that the browser paints the curve first
+let drawingForce = null;
 const view = () => document.querySelector("input[name=view]:checked").value;
 
 export const depthNow = () => Math.min(state.cursor === null ? Infinity : state.cursor, state.curve.rows.length - 1);
@@ -24,7 +26,8 @@ export function drawCurves() {
   const { between } = what === "velocity" ? curve : { between: null };
   const traces = [...modelBand(curve, between, key, scale), ...others.map((other) => pinTrace(other, key, scale, "restitution"))];
   draw("cor", joined(told(opened(curve.figures[what])), between), traces, shapes);
-  draw("force", told(curve.figures.force), others.map((other) => pinTrace(other, "max_indentation_m", 1e6, "force_N")), at ? [line(1e6 * at.max_indentation_m)] : []);
+  clearTimeout(drawingForce);
+  drawingForce = setTimeout(() => draw("force", told(curve.figures.force), others.map((other) => pinTrace(other, "max_indentation_m", 1e6, "force_N")), at ? [line(1e6 * at.max_indentation_m)] : []), NEXT);
   const cors = curve.rows.map((row) => row.restitution);
   $("cor").setAttribute("aria-label", cors.length
     ? `${curve.preview ? "Preview of the c" : "C"}oefficient of restitution from ${Math.min(...cors).toFixed(3)} to ${Math.max(...cors).toFixed(3)} against ${what === "velocity" ? "impact velocity" : "indentation"}; the numbers are in a table below`
@@ -37,8 +40,8 @@ export function drawCurves() {
 // The figure of a preview: its own curve is dashed, and the legend says what it is.
 function told(spec) {
   if (!spec || !state.curve.preview) return spec;
-  const data = spec.data.map((trace) => (trace.mode === "lines+markers"
-    ? { ...trace, name: escaped(previewOf(state.curve)), line: { ...trace.line, dash: "dash" } } : trace));
+  const name = ({ name: words, mode }) => (mode === "lines+markers" ? escaped(previewOf(state.curve)) : /^total error/.test(words) ? "usual error of such a preview" : words);
+  const data = spec.data.map((trace) => ({ ...trace, name: name(trace), ...(trace.mode === "lines+markers" ? { line: { ...trace.line, dash: "dash" } } : {}) }));
   return { ...spec, data };
 }
 
@@ -85,7 +88,7 @@ function modelBand({ rows }, between, key, scale) {
   const x = between ? between.velocity : known.map((row) => scale * row[key]);
   const e = between ? between.quasi_static : known.map((row) => row.restitution);
   const model = between ? between.model_error : known.map((row) => row.model_error);
-  const edge = (sign) => ({ type: "scatter", mode: "lines", hoverinfo: "skip", x, y: e.map((value, k) => Math.min(1, Math.max(0, value + sign * model[k]))) });
+  const edge = (sign) => ({ type: "scatter", mode: "lines", hoverinfo: "skip", meta: "wide", x, y: e.map((value, k) => Math.min(1, Math.max(0, value + sign * model[k]))) });
   const colour = matchMedia("(prefers-color-scheme: dark)").matches ? DARK_MODEL : MODEL;
   return [
     { ...edge(-1), showlegend: false },
@@ -107,7 +110,7 @@ export function showCursor() {
   const { curve } = state, row = curve.rows[depthNow()];
   if (!row) { $("cursor-text").textContent = ""; return; }
   const velocity = row.impact_velocity_m_per_s === null ? "" : `${quantity(row.impact_velocity_m_per_s, "m/s")}, `;
-  const total = curve.errors && row.total_error !== null ? ` ± ${digits(row.total_error, 2)}` : "";
+  const total = (curve.errors || curve.preview) && row.total_error !== null ? ` ± ${digits(row.total_error, 2)}` : "";
   const words = `${velocity}${quantity(row.max_indentation_m, "m")}, ${quantity(row.force_N, "N")}: COR ${row.restitution.toFixed(4)}${total} (model ± ${digits(row.model_error, 2)})${isResolved(row) ? "" : ", not resolved"}${curve.preview ? " – preview" : ""}`;
   $("cursor-text").textContent = words;
   $("cursor").setAttribute("aria-valuetext", words);

@@ -75,7 +75,7 @@ function ticks(layout, traces, name, narrow) {
   const ends = axis.range || (axis.autorangeoptions ? [axis.autorangeoptions.minallowed, axis.autorangeoptions.maxallowed] : []);
   const values = [...ends, ...traces.flatMap((trace) => Array.from(numbers(trace[name])))].filter(Number.isFinite).map(Math.abs);
   const best = prefix(Math.max(0, ...values) * factor, unit), times = factor / best.scale;
-  axis.title = { ...axis.title, text: `${title[1]} (${best.name})` };
+  Object.assign(axis, { title: { ...axis.title, text: `${title[1]} (${best.name})` }, ticksuffix: "", exponentformat: "none" });
   if (times === 1) return traces;
   if (axis.range) axis.range = axis.range.map((end) => end * times);
   const allowed = axis.autorangeoptions;

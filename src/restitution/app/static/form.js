@@ -90,7 +90,8 @@ export function showGrid() {
   const { grid, content } = state;
   if (!$("grid-verdict")) return;
   const { nodes, spacing } = { ...grid, ...content.grid };
-  $("grid-verdict").textContent = nodes && spacing ? `${[nodes].flat().join(" × ")} nodes of ${asText(spacing).replace("um", "µm")}` : grid ? "the pixels of the scan" : "";
+  const finer = get("grid.refine") === "auto" || (grid && grid.refine === "auto") ? ", refined" : "";
+  $("grid-verdict").textContent = nodes && spacing ? `${[nodes].flat().join(" × ")} nodes of ${asText(spacing).replace("um", "µm")}${finer}` : grid ? "the pixels of the scan" : "";
 }
 
 function drawField(field) {

@@ -71,7 +71,8 @@ export function stop() {
   if (asking) asking.abort.abort();
   if (running) running.abort();
   asking = running = null;
-  say(state.curve.errors || !state.curve.rows.length ? "stopped" : "stopped; the errors are not complete");
+  const { errors, preview, rows } = state.curve;
+  say(preview ? `stopped; ${previewOf(state.curve)}` : errors || !rows.length ? "stopped" : "stopped; the errors are not complete");
 }
 
 export function drawAgain() { surfaceKey = ""; changed(); }

@@ -9,7 +9,7 @@ import { $, element, state } from "./state.js";
 export function drawUpload() {
   const input = element("input", { type: "file", id: "scan", multiple: true, "aria-label": "Scan from a file" });
   input.addEventListener("change", () => upload([...input.files]));
-  return element("div", { class: "field wide" }, element("label", { for: "scan" }, "Read a scan, or drop it onto the page; several scans of one surface are joined"), input);
+  return element("div", { class: "field wide long" }, element("label", { for: "scan" }, "Read a scan, or drop it onto the page; several scans of one surface are joined"), input);
 }
 
 async function upload(files) {

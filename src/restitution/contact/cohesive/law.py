@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Protocol, cast
 
@@ -18,6 +18,7 @@ from restitution.contact.checks.resolution import divisions, radius_of_asperitie
 from restitution.contact.cohesive.equilibrium import CohesiveState, box_gap
 from restitution.contact.cohesive.loading import load_cohesive, load_until, move
 from restitution.contact.cohesive.separation import separate_cohesive, separation_of
+from restitution.contact.cohesive.steps import ACCURACY
 from restitution.contact.contact import Contact
 from restitution.contact.models import (
     COMPANION,
@@ -87,6 +88,7 @@ class CohesiveLaw(Adhesion):
     bytes_per_node = 1800.0  # up to 100 states are kept, with 16 bytes per node each
     follows_path = True
     steep = True
+    work_tolerance: float = ACCURACY
 
     @abstractmethod
     def energy(self, gap: Array) -> Array:
@@ -165,7 +167,10 @@ class CohesiveLaw(Adhesion):
     def load(
         self, contact: Contact, indentation: float, *, start: State | None, residual: float
     ) -> State:
-        return load_cohesive(contact, indentation, start=start, residual=residual)
+        accuracy = self.work_tolerance
+        return load_cohesive(
+            contact, indentation, start=start, residual=residual, accuracy=accuracy
+        )
 
     def with_work(self, state: State, start: State | None) -> State:
         return state  # the path to the state has counted its work
@@ -174,7 +179,7 @@ class CohesiveLaw(Adhesion):
         return True
 
     def step(self, state: State, indentation: float, residual: float) -> State:
-        return move(cast(CohesiveState, state), indentation, residual)
+        return move(cast(CohesiveState, state), indentation, residual, self.work_tolerance)
 
     def enclose(
         self,
@@ -186,7 +191,8 @@ class CohesiveLaw(Adhesion):
         scale: float,
         residual: float,
     ) -> tuple[State, State] | None:
-        return load_until(contact, reached, ahead, start=start, residual=residual, scale=scale)
+        options = {"residual": residual, "scale": scale, "accuracy": self.work_tolerance}
+        return load_until(contact, reached, ahead, start=start, **options)
 
     def unload(
         self, state: State, *, steps: int, tolerance: float, residual: float, known: Sequence[State]
@@ -257,6 +263,7 @@ class Cohesive(CohesiveLaw):
     Attributes:
         work_of_adhesion: Work of adhesion w (J/m²), positive.
         equilibrium_separation: Gap z₀ (m) at which the traction is zero, which sets the range.
+        work_tolerance: Error of a step of loading, relative to its energies (dimensionless).
 
     Raises:
         CaseError: A value is not positive.
@@ -264,12 +271,17 @@ class Cohesive(CohesiveLaw):
 
     work_of_adhesion: float
     equilibrium_separation: float = EQUILIBRIUM_SEPARATION
+    work_tolerance: float = ACCURACY
 
     label = "cohesive"
 
     def __post_init__(self) -> None:
         set_field(self, "work_of_adhesion", "J/m2")
         set_field(self, "equilibrium_separation", "m")
+        set_field(self, "work_tolerance", "")
+
+    def with_work_tolerance(self, tolerance: float) -> Cohesive:
+        return replace(self, work_tolerance=tolerance)
 
     @cached_property
     def _law(self) -> LennardJones:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 from restitution.contact.cohesive.equilibrium import CohesiveState, law_of, rigid_start
 from restitution.contact.cohesive.steps import ACCURACY, follow
@@ -71,11 +72,12 @@ def load_until(
     start: State | None,
     residual: float,
     scale: float = 0.0,
+    accuracy: float = ACCURACY,
 ) -> tuple[CohesiveState, CohesiveState]:
     """Return the last state of loading that is not `reached`, and the first state that is.
 
     If it is true at the beginning, both are this state. `ahead` estimates the distance (m) that is
-    left from a state and the stiffness there (N/m). `scale` is that of `follow`.
+    left from a state and the stiffness there (N/m). `scale` and `accuracy` are those of `follow`.
     """
     before = _on_the_way(start, reached)
     if before is None:
@@ -91,7 +93,8 @@ def load_until(
         stiffness /= state.indentation - state.before.indentation
         return state.indentation + max(_BEYOND * ahead(state, stiffness), _ONWARD * z0)
 
-    for state in follow(before, math.inf, residual=residual, scale=scale, goal=goal):
+    onward = partial(follow, residual=residual, accuracy=accuracy, scale=scale, goal=goal)
+    for state in onward(before, math.inf):
         if reached(state):
             return before, state
         before = state

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import cast
 
 import numpy as np
@@ -51,24 +52,25 @@ def _separating(
     yield state
     tension = max(0.0, -state.force)
     loaded, scale = state, reference_energy(state, loading=False)
-    options = {"residual": _RESIDUAL, "accuracy": accuracy, "scale": scale}
     state = replace(state, is_first_loading=False, before=None)
-    if accuracy >= ACCURACY:  # otherwise the steps of loading are too long
+    # Otherwise the steps of loading are too long.
+    if accuracy >= law_of(loaded.contact).work_tolerance:
         for earlier in _branch(loaded):
             state = _reversed(loaded, earlier)
             tension = max(tension, -state.force)
             yield state
     shared = _shared(loaded, state.indentation, known)
     guide = Guide.of(known, loaded)
+    back = partial(follow, residual=_RESIDUAL, accuracy=accuracy, scale=scale, guide=guide)
     for meeting in shared[:: max(1, len(shared) // _MEETINGS)]:
-        for new in follow(state, meeting.indentation, guide=guide, **options):
+        for new in back(state, meeting.indentation):
             tension = max(tension, -new.force)
             state = new
             yield new
         if _is_same(state, meeting):
             yield from _continued(state, shared[shared.index(meeting) :])
             return
-    for new in follow(state, -math.inf, guide=guide, **options):
+    for new in back(state, -math.inf):
         tension = max(tension, -new.force)
         yield new
         if new.contact_nodes == 0 and -new.force <= _FARTHEST * tension and is_unique(new):
