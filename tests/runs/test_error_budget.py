@@ -319,6 +319,7 @@ def test_the_error_holds_what_the_grid_took_from_a_twin(scan, tmp_path):
     (warning,) = [each for each in summary["warnings"] if "leaves out waves" in each]
     assert "615 x 615 nodes" in warning
     assert "cells of 0.0391 um" in warning
+    assert "set grid.refine = 8," in warning
 
 
 def test_a_scan_has_places(scan, tmp_path):

@@ -86,6 +86,7 @@ def test_few_asperities_with_a_growing_bound_get_a_grid_that_carries_all_waves(c
     chosen = with_chosen_grids(case(interface=growing), tmp_path)
     assert chosen.grid.factor == named
     assert chosen.splitting(tmp_path) is None
+    assert notice_of(chosen, tmp_path) is None
     assert given.refined(named // 2).splitting(tmp_path) is not None
 
 

@@ -128,9 +128,11 @@ def notice_of(case: CaseTables, folder: Path) -> str | None:
     """One line if patches were asked for, but have no waves or an error that holds too rarely."""
     if _choice(case) != "patch":
         return None
-    wanted = _wanted(case, folder)
-    if wanted is None:
+    wanted = _wanted(case.refined(case.factors()[0]), folder)
+    if wanted is None and _wanted(case.refined(1), folder) is None:
         return "roughness.below_grid: no waves are below the grid, so nothing is split"
+    if wanted is None:
+        return None
     if not case.interface.adhesive_energy and _on_few_asperities(case, folder):
         return (
             "roughness.below_grid: the smallest indentation is below the rms height; where few "

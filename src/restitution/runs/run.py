@@ -118,10 +118,10 @@ def run_case(
     with run.record(
         out, lambda: _write_results(case, text, out, run, run.deepest) if run.deepest else {}
     ):
-        given, case = case, with_chosen_grids(case, folder, run.warn)
+        case = with_chosen_grids(case, folder, run.warn)
         contact = case.contact(folder)
         require_run_in(case, contact)
-        if case.grid == given.grid and (notice := notice_of(case, folder)) is not None:
+        if (notice := notice_of(case, folder)) is not None:
             run.warn(notice)
         solve_patches(contact, run.progress)
         case = with_chosen_adhesion(case, contact, run.warn)
