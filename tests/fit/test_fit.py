@@ -33,6 +33,33 @@ def test_exact_data_give_the_parameter_back(smooth_case, measure):
     assert math.exp(found.uncertainty.halves[0]) < 1.2
 
 
+def with_size_effect(text, length):
+    return text.replace("[interface]", f'[interface]\nsize_effect = "{length}"')
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_the_size_effect_is_recovered_within_its_interval(smooth_case, measure, seed):
+    measured = measure(with_size_effect(smooth_case("900 MPa"), "100 um"), noise=0.01, seed=seed)
+    case = with_size_effect(smooth_case("900 MPa"), "30 um")
+    known = fit(case, Path(), measured, ["size_effect"])
+    assert abs(math.log(values(known)[0] / 100e-6)) < 1.3 * known.uncertainty.halves[0]
+    assert identifiable(known, 0)
+
+
+def test_smooth_spheres_do_not_tell_the_size_effect_from_the_yield_pressure(smooth_case, measure):
+    """Both set one hardness, H₀ √(1 + R*/R)."""
+    measured = measure(with_size_effect(smooth_case("900 MPa"), "100 um"), noise=0.01, seed=1)
+    case = with_size_effect(smooth_case("700 MPa"), "150 um")
+    both = fit(case, Path(), measured, ["size_effect", "yield_pressure"])
+    assert not identifiable(both, 0)
+    assert any("not identifiable from these data" in sentence for sentence in findings(both))
+    assert any("determine only the combination" in sentence for sentence in findings(both))
+    pressure, length = values(both)[1], values(both)[0]
+    share = 2 / (3 * 0.358**2) / 250e-6 * 0.5  # two equal spheres share the imprint
+    hardness, true = (p * math.sqrt(1 + share * h) for p, h in ((pressure, length), (0.9e9, 1e-4)))
+    assert hardness == approx(true, rel=0.05)
+
+
 def test_yield_and_roughness_are_recovered_within_their_intervals(recovered):
     assert [each.key for each in recovered.parameters] == [
         "interface.yield_pressure",

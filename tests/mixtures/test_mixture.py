@@ -12,6 +12,7 @@ import pytest
 
 from restitution.case.case_file import parse_case
 from restitution.curve.interpolation import RatioCurve
+from restitution.errors import CaseError
 from restitution.laws.from_results import bare_law
 from restitution.laws.law_files import read_laws
 from restitution.mixtures.family import families
@@ -81,6 +82,21 @@ def test_smooth_spheres_with_a_size_effect_yield_at_the_pressure_of_their_radius
         first = FirstYield(pair.radius, law.contact_modulus, p_y)
         assert law.yield_pressure == approx(p_y, rel=1e-9)
         assert law.yield_velocity == approx(float(first.velocity(pair.mass)), rel=1e-6)
+
+
+def test_one_size_effect_of_several_materials_is_refused(smooth):
+    def families_with(common, **pairs):
+        interfaces = {frozenset(): {"work_of_adhesion": "0 J/m^2", **common}}
+        for key, table in pairs.items():
+            interfaces[frozenset(key.split("_"))] = {**interfaces[frozenset()], **table}
+        return families(replace(smooth, interfaces=interfaces))
+
+    sized, own = {"size_effect": "0.4 um"}, {"size_effect": "0 um"}
+    with pytest.raises(CaseError, match=r"size_effect: h\* is that of one .* alu, pmma yield"):
+        families_with(sized)
+    assert families_with(sized, pmma_alu=own, pmma=own, pmma_drum=own)
+    assert families_with({**sized, "yield_pressure": "1 GPa"})
+    assert families_with(own)
 
 
 def test_the_interpolation_error_vanishes_at_computed_radii_only(mixture_text, tmp_path):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import tomli_w
 
-from restitution import run
+from restitution import export, run
 from restitution.case.case_file import parse_case
 from restitution.laws.from_results import bare_law
 from restitution.results.writer import ResultsFolder
@@ -122,3 +122,17 @@ def test_grids_of_a_convergence_study_have_one_size_effect(tmp_path):
         e.append(bare_law(out).column("restitution"))
     assert e[1] == approx(e[0], rel=2e-5)
     assert e[2] > e[0] + 1e-3
+
+
+def test_exported_files_state_the_size_effect(tmp_path):
+    for size, said in (("0.4 um", ["size effect h* = 4e-07 m"]), ("0 um", [])):
+        case = tables(0)
+        case["interface"]["size_effect"] = size
+        out = tmp_path / size
+        (notes,) = [
+            path.read_text()
+            for path in export(run(case, out=out).folder, to="yade", out=out / "x", velocity=0.01)
+            if path.suffix == ".txt"
+        ]
+        assert [line for line in said if line not in notes] == []
+        assert ("size effect" in notes) == bool(said)

@@ -100,12 +100,21 @@ def _about(pair: ExportedPair, code: str, *, pulls: bool) -> list[str]:
         *_losses(law, velocity),
         f"  R* = {law.radius:.6g} m, E* = {law.contact_modulus:.6g} Pa, m* = {law.mass:.6g} kg",
         f"  yield pressure p_y: {p_y}; convention: {law.conventions.yield_pressure}",
+        *_size_effect(law),
         f"  source of the yield pressure: {source}",
         f"  end of contact assumed for e: {law.conventions.end_of_contact}",
         f"  the error of e includes: {law.conventions.restitution_error}",
         f"  elastic contact time at {velocity:.6g} m/s: {pair.contact_time:.3g} s",
         f"  computed from {law.lowest:.4g} to {law.highest:.4g} m/s; nothing is extrapolated",
         *_adhesion(law, velocity, code, pulls=pulls),
+    ]
+
+
+def _size_effect(law: Law) -> list[str]:
+    if (length := law.model.get("size_effect_m")) is None:
+        return []
+    return [
+        f"  small contacts are harder (size effect h* = {float(length):.4g} m); p_y: smooth bodies"
     ]
 
 

@@ -162,7 +162,28 @@ def families(mixture: Mixture) -> list[Family]:
     for family in pairings:
         for radius in (family.radii[0], family.radii[-1]):
             family._parsed(radius, family._grid)
+    _check_size_effect(mixture, pairings)
     return pairings
+
+
+def _check_size_effect(mixture: Mixture, pairings: list[Family]) -> None:
+    """Raise `CaseError` if one h* would be that of several materials."""
+    common = mixture.interfaces[frozenset()]
+    if "size_effect" not in common or {"yield_pressure", "yield_strength"} & common.keys():
+        return
+    soft: dict[str, str] = {}
+    for family in pairings:
+        interface = mixture.interface(family.first, family.second)
+        case = family._parsed(family.radii[0], family._grid)
+        if case.interface.size_effect and interface["size_effect"] == common["size_effect"]:
+            body = family.second if case.yielding().yields == "second" else family.first
+            soft.setdefault(body.name, family.name)
+    if len(soft) > 1:
+        tables = " and ".join(f'[pairs."{name}"]' for name in soft.values())
+        raise CaseError(
+            f"interface.size_effect: h* is that of one material, but {', '.join(soft)} yield; give "
+            f'each in the tables of their pairs, such as {tables}, or size_effect = "0 um" there'
+        )
 
 
 def _steps(start: float, end: float, step: float) -> list[float]:
