@@ -30,6 +30,7 @@ from restitution.contact.plasticity.size_effect import (
     BERKOVICH,
     dislocation_density,
     error_of_law,
+    spread,
 )
 from restitution.contact.prescribed.force import solve_at_force
 from restitution.errors import CaseError
@@ -316,20 +317,19 @@ def test_the_error_of_the_law_grows_on_sharper_asperities(depth):
     assert 0 < shares[0] < shares[1]
 
 
-def test_another_patch_that_begins_to_touch_moves_no_bound_by_a_jump():
-    """Two bumps, one higher; nodes between them belong to both."""
-    grid = Grid((48, 48), (10e-9, 10e-9))
-    x, y = grid.x[:, None], grid.y[None, :]
-    high, low = (-((x - at) ** 2 + y**2) / 2e-6 for at in (-80e-9, 120e-9))
-    body = Body(1e-3, STIFF, 0.0)
-    bound = []
-    for below in np.linspace(2.2e-9, 1.2e-9, 41):
-        surface = Surface(np.maximum(high, low - below), grid)
-        contact = Contact(Pair(body, body), surface, SizedBound(H0, 0.4e-6))
-        bound.append(contact.plasticity.bound(contact, 1.5e-9, 1e-8)[0][26:30, 20:28])
-    change = np.abs(np.diff(bound, axis=0)) / H0  # between the bumps
-    assert change.sum(axis=0).max() > 0.1
-    assert change.max() < 0.05
+@pytest.mark.parametrize("periodic", [False, True])
+def test_a_patch_that_begins_to_touch_moves_no_density_by_a_jump(periodic):
+    """Its own density begins at zero, that of the other patch is 1."""
+    pressure, density = np.zeros((2, 20, 24))
+    pressure[8:12, 4:9], density[8:12, 4:9] = 1.0, 1.0
+    before = spread(density, pressure, periodic=periodic)
+    assert before == approx(np.ones_like(before), rel=1e-6)
+    for small in (1e-4, 1e-7, 1e-10):
+        pressure[10, 14] = density[10, 14] = small
+        change = np.abs(spread(density, pressure, periodic=periodic) - before)
+        near = change[7:13, 2:13]
+        assert near.max() < 300 * small
+    assert change.max() < 1e-3
 
 
 @pytest.mark.parametrize(

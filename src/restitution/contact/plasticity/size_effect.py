@@ -42,7 +42,9 @@ _SCATTER = 0.26
 # value; hardness is then 4 % below the law at twice this depth, as in MgO (G. Feng, W. D. Nix,
 # Scripta Mater. 51 (2004) 599–603).
 _SATURATED = 100e-9
-_OWN = 100.0  # weight of a node in its own density; that of a neighbour is 1
+_OWN = 1000.0  # weight of a node in its own mean; that of a neighbour is 1
+_DIGITS = 1e-18  # least sum of weights above rounding
+_FAR = 1e-5  # weight of distance⁻⁴ beside distance⁻⁸, whose transform has no digits far away
 _SHARED = 0.5  # part of an imprint in each body if both yield
 _INCOMPLETE = 0.99  # largest mean indentation of elastic periodic bodies, over the mean gap
 
@@ -73,24 +75,33 @@ def strengthening_of_sphere(length: float, radius: float) -> float:
     return float(strengthening(length, np.asarray(1 / radius)))
 
 
-def _spread(density: Array, pressure: Array, *, periodic: bool) -> Array:
-    """Mean density of the nodes around each node, with the weights pressure²/distance⁴.
+def spread(density: Array, pressure: Array, *, periodic: bool) -> Array:
+    """Mean density of the nodes around: by pressure/distance⁸ for nodes without pressure.
 
-    Nodes between patches touch, too, and no node may jump when another patch begins to touch.
+    Nodes with pressure have their own, but for a share of a mean by pressure²/distance⁴, so that
+    no node jumps when a patch begins to touch with a density that rises from zero.
     """
+    touching = pressure > 0
+    if touching.all():
+        return density
     shape = density.shape
     padded = shape if periodic else tuple(next_fast_len(2 * n - 1, real=True) for n in shape)
     x, y = (np.minimum(np.arange(n), n - np.arange(n)) for n in padded)
-    squares = (x[:, None] ** 2 + y[None, :] ** 2).astype(float)
-    squares[0, 0] = _OWN**-0.5
-    kernel = rfft2(squares**-2)
+    squares = np.maximum(x[:, None] ** 2 + y[None, :] ** 2, 1).astype(float)
+    weight = pressure / pressure.max()
 
-    def around(values: Array) -> Array:
-        whole = irfft2(kernel * rfft2(values, padded), padded)
-        return np.asarray(whole[: shape[0], : shape[1]])
+    def mean(kernel: Array, weight: Array) -> Array:
+        of = rfft2(kernel)
+        sums = [
+            irfft2(of * rfft2(values, padded), padded)[: shape[0], : shape[1]]
+            for values in (weight * density, weight)
+        ]
+        values = sums[0] / np.maximum(sums[1], _DIGITS)
+        return np.asarray(np.clip(values, density[touching].min(), density.max()))
 
-    weight = (pressure / pressure.max()) ** 2
-    return np.asarray(around(weight * density) / around(weight))
+    wide = squares**-2
+    wide[0, 0] = _OWN
+    return np.where(touching, mean(wide, weight**2), mean(squares**-4 + _FAR * squares**-2, weight))
 
 
 def strengthening_of_waves(contact: Contact, length: float, pressure: Array) -> Array | float:
@@ -101,7 +112,7 @@ def strengthening_of_waves(contact: Contact, length: float, pressure: Array) -> 
     if not length or not pressure.any():
         return 1.0
     density = dislocation_density(contact, pressure, periodic=True)
-    return strengthening(length, _spread(density, pressure, periodic=True))
+    return strengthening(length, spread(density, pressure, periodic=True))
 
 
 def strengthening_at(
@@ -123,7 +134,7 @@ def strengthening_at(
     if not pressure.any():
         return 1.0, count
     density = dislocation_density(contact, pressure, periodic=contact.periodic)
-    factor = strengthening(length, _spread(density, pressure, periodic=contact.periodic))
+    factor = strengthening(length, spread(density, pressure, periodic=contact.periodic))
     around = [(side.start, n - side.stop) for side, n in zip(box, contact.grid.nodes, strict=True)]
     return np.pad(factor, around, mode="edge"), count
 
