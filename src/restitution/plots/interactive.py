@@ -210,7 +210,7 @@ def _legend_only(
 
 def _mark_line(mark: Mark) -> dict[str, Any]:
     other = "y" if mark.axis == "x" else "x"
-    ends = {f"{mark.axis}0": mark.value, f"{mark.axis}1": mark.value}
+    ends: dict[str, Any] = {f"{mark.axis}0": mark.value, f"{mark.axis}1": mark.value}
     ends |= {f"{mark.axis}ref": mark.axis, f"{other}0": 0, f"{other}1": 1}
     line = {"color": "#8c959f", "dash": "dot", "width": 1}
     return {"type": "line", **ends, f"{other}ref": f"{other} domain", "line": line}
