@@ -74,6 +74,8 @@ def test_forces_are_drawn_in_a_unit_that_suits_them(page):
     )
     scale = {"nN": 1e-9, "µN": 1e-6, "mN": 1e-3, "N": 1.0}[re.search(r"\((.*)\)", title)[1]]
     assert 1 <= largest / scale < 1000
+    ticks = page.locator("#force .ytick text").all_text_contents()
+    assert all(re.fullmatch(r"−?[\d.]+", tick) for tick in ticks), ticks
 
 
 @pytest.mark.parametrize("width", [390, 820, 1440])

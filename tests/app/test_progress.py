@@ -4,7 +4,9 @@ from pathlib import Path
 
 import numpy as np
 
+from restitution.app.content import text_of
 from restitution.app.grid import with_grid
+from restitution.app.presets import presets
 from restitution.app.runs import Progress, Runs
 from restitution.case.case_file import parse_case
 from tolerance import approx
@@ -62,3 +64,12 @@ def test_a_scan_of_many_pixels_gets_a_grid_with_cells_of_its_pixels(tmp_path):
 
 def test_a_scan_that_is_not_there_gets_no_grid():
     assert with_grid(SCAN, Path("nowhere"))[1] == {}
+
+
+def test_many_impacts_do_not_change_the_grid():
+    """The grid that probes a case is smaller than what they need."""
+    text = text_of(presets()[0]["content"])
+    _, grid = with_grid(text, Path("nowhere"))
+    text, same = with_grid(text + "\n[impacts]\ncoverage = 1\n", Path("nowhere"))
+    assert same == grid
+    assert parse_case(text).impacts is not None

@@ -41,7 +41,9 @@ def with_grid(text: str, folder: Path) -> tuple[str, Content | None]:
     if scans_of(content) and not joins_scans(content):
         chosen = _of_scans(text, folder)
     else:
-        probe = {**content, "grid": {**own, **_PROBE}}
+        # Many impacts need a larger grid than the probe.
+        first = {name: table for name, table in content.items() if name != "impacts"}
+        probe = {**first, "grid": {**own, **_PROBE}}
         if problems_of(probe):
             return text_of(probe), None
         chosen = _of_case(parse_case(text_of(probe)), own, folder)

@@ -8,7 +8,7 @@ import { parsed, quantity, withError } from "./units.js";
 
 const FIRST = 1; // velocity (m/s) of the answer unless a reader has typed one
 const NEAR = 1e-3; // relative difference of a computed velocity from the one in the case
-let typed = false;
+let typed = false, exportTyped = false;
 
 // Values at `velocity` (m/s), linear in ln V between the nearest of many; null outside them.
 export function at(velocity, between) {
@@ -28,6 +28,7 @@ export const answerVelocity = () => parsed($("answer-velocity").value, "m/s");
 
 export function listenForAnswer() {
   $("answer-velocity").addEventListener("input", () => { typed = true; drawAnswer(); });
+  $("code-velocity").addEventListener("input", () => { exportTyped = true; });
 }
 
 const rounded = (value) => Number(value.toPrecision(1));
@@ -39,6 +40,7 @@ export function drawAnswer() {
     const inside = FIRST >= low && FIRST <= high * (1 + NEAR) ? FIRST : Math.max(low, Math.min(high, rounded(0.5 * high)));
     $("answer-velocity").value = quantity(inside, "m/s", 3);
   }
+  if (!exportTyped) $("code-velocity").value = $("answer-velocity").value;
   const V = answerVelocity(), here = at(V, between);
   $("answer-velocity").setAttribute("aria-invalid", String(V === null));
   $("answer-value").textContent = here ? inDigits(V, here, curve) : "e = –";

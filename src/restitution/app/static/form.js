@@ -143,7 +143,7 @@ function drawChoice(field, id) {
 function drawText(field, id) {
   const input = element("input", { id, type: "text", spellcheck: "false" });
   input.value = asText(get(field.key));
-  input.placeholder = libraryValue(field) || (field.switch ? `no ${field.switch}` : "");
+  input.placeholder = libraryValue(field) || (field.switch ? "none" : "");
   input.addEventListener("input", () => {
     set(field.key, asValue(field, input.value));
     followed(field, id);

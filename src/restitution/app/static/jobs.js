@@ -3,6 +3,7 @@
 import { answerVelocity, drawAnswer } from "./answer.js";
 import { firstImpact, get, whole } from "./content.js";
 import { draw } from "./figures.js";
+import { inWords } from "./messages.js";
 import { lostServer, stream, tab } from "./requests.js";
 import { $, fill, state } from "./state.js";
 import { digits, quantity } from "./units.js";
@@ -54,7 +55,7 @@ export async function runJob(name) {
       if (line.progress) tell(line.progress);
       else if (line.replaced) tell("cancelled");
       else if (line.error) tell(line.error);
-      else if (line.problems) tell(Object.entries(line.problems).map(([key, words]) => `${key}: ${words}`).join("; "));
+      else if (line.problems) tell(Object.entries(line.problems).map(([key, words]) => inWords(key ? `${key}: ${words}` : words)).join("; "));
       else if (line.results) {
         finished[name] = { sent, figure: job.figure && job.figure(line), ...(job.keep ? job.keep(line) : {}) };
         drawJob(name);

@@ -197,7 +197,7 @@ async function runWhole() {
         state.curve = { ...numbersOf(line), errors: line.includes ? `of ${line.includes}` : "", complete: true, content: sent, preview: "", under: null };
         if (line.failure) showProblems(problemsOf(line.failure));
         show(line);
-        say(`complete in ${line.seconds.toFixed(1)} s${line.includes ? `; the total error includes ${line.includes}` : ""}`);
+        say(`complete in ${line.seconds.toFixed(1)} s`);
       }
     });
   } catch (error) {
