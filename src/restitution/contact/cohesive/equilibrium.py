@@ -45,6 +45,14 @@ _UNIQUE = 0.7
 _TANGENT = 1e-3
 
 
+class FarEquilibriumError(Exception):
+    """No equilibrium within the reach of a solve, which took `convolutions`."""
+
+    def __init__(self, convolutions: int) -> None:
+        super().__init__(convolutions)
+        self.convolutions = convolutions
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class CohesiveState(State):
     """A state with an attraction of finite range.
@@ -173,11 +181,13 @@ def solve_cohesive(
     limit: Array | float,
     history: State | None,
     residual: float,
+    reach: float = math.inf,
 ) -> CohesiveState:
     """Find an equilibrium on `box`, by descending from the pressure `p` to lower energies.
 
     `u` is the displacement due to `p`; None to compute it. The caller updates works and losses.
-    Raises `NotConvergedError`, and `DomainError` if the pressure of elastic periodic bodies exceeds
+    Raises `FarEquilibriumError` if the displacement of a node would change by more than `reach`
+    (m), `NotConvergedError`, and `DomainError` if the pressure of elastic periodic bodies exceeds
     E*.
     """
     K = _operator(contact, box)
@@ -194,7 +204,10 @@ def solve_cohesive(
         tolerance=max(_TOLERANCE * residual, _LEAST_TOLERANCE) * z0,
         zero_mean=contact.periodic,
         secant=law.secant if law.steep else None,
+        reach=reach,
     )
+    if not solved.converged and reach < math.inf:
+        raise FarEquilibriumError(K.count)
     if not solved.converged:
         raise NotConvergedError(
             f"the cohesive solve at an indentation of {1e9 * indentation:.6g} nm stopped at a "
