@@ -40,6 +40,9 @@ _CORRECTION = 10.0
 # Tolerances of the solves of loading between the given depths, whose errors can become plastic
 # displacement, and of unloading under pressure.
 _BETWEEN, _BACK = 1e-5, 1e-4
+# Under tension, at most this fraction of the length of a step in units of z₀, because short steps
+# are those before a jump.
+_OF_STEP = 2e-5
 _FIRST_STEP = 0.25  # length of the first step, in units of the equilibrium separation z₀
 
 # Longest step under tension, as a fraction of the sum of z₀ and the adhesive length, while the gap
@@ -49,6 +52,9 @@ _UNDER_TENSION, _NEAR, _TENSE, _SLIGHT = 0.4, 2.0, 0.4, 0.02
 # Largest relative error of the largest tension where it ends in a jump, but no step is made shorter
 # than _AT_FOLD z₀ for it.
 _AT_JUMP, _AT_FOLD = 3e-3, 0.01
+# Longest step with a jump after another jump, in units of z₀. The energy that a longer one loses may
+# be the error of the trapezium rule.
+_ALONE = 0.08
 _GROWTH = 3.0  # largest ratio of the lengths of two steps
 # A solve that may pass a jump ends where a node moves by this distance, in units of z₀, from its
 # start. In lactose with Rq 0.15 nm the largest change was below 0.35 z₀ on the branch, and above
@@ -146,7 +152,7 @@ class _Ahead:
         z0 = law_of(state.contact).equilibrium_separation
         width = abs(self.left - state.indentation)
         jump = abs(self._states[-1].force - state.force)
-        near = 0.5 * jump * width <= self._allowed and not _misses_tension(state, width, tension)
+        near = 0.5 * jump * width <= self._allowed and not _is_long(state, self.left, tension)
         if near or width <= 2 * _LEAST_STEP * z0:
             return self.left, math.inf
         return 0.5 * (state.indentation + self.left), _REACH * z0
@@ -203,8 +209,7 @@ def follow(
             rejected += state_on.convolutions
             state = state_on
         try:
-            fine = last or state.force <= 0  # the forces of bodies far apart are small
-            loose = residual if fine else max(residual, _BETWEEN if sign > 0 else _BACK)
+            loose = residual if last else max(residual, _tolerance(state, at))
             step = _try(state, at, loose, known or guide, reach)
         except FarEquilibriumError as left_branch:
             rejected += left_branch.convolutions
@@ -219,7 +224,7 @@ def follow(
         new = step.state
         allowed = limit(state, new)
         smooth = step.is_smooth(allowed)
-        coarse = step.uncertainty > allowed or _misses_tension(state, length, tension)
+        coarse = step.uncertainty > allowed or _is_long(state, at, tension)
         if not smooth and coarse and length > _LEAST_STEP * z0:
             ahead.reject(new, allowed)
             rejected += new.convolutions
@@ -254,6 +259,16 @@ def _next(state: CohesiveState, target: float, length: float) -> float:
     return state.indentation + math.copysign(min(length, 0.5 * left), target - state.indentation)
 
 
+def _tolerance(state: CohesiveState, at: float) -> float:
+    """Tolerance of a solve at the indentation `at` between the given depths."""
+    if state.force > 0:
+        return _BETWEEN if at > state.indentation else _BACK
+    z0 = law_of(state.contact).equilibrium_separation
+    if state.smallest_gap > _NEAR * z0:  # the forces of bodies far apart are small
+        return 0.0
+    return min(_BETWEEN, _OF_STEP * abs(at - state.indentation) / z0)
+
+
 def _allowed(
     state: CohesiveState, new: CohesiveState, *, accuracy: float, scale: float, target: float
 ) -> float:
@@ -272,6 +287,13 @@ def _work_ahead(state: CohesiveState, new: CohesiveState, target: float) -> floa
     left = target - new.indentation
     stiffness = (new.force - state.force) / (new.indentation - state.indentation)
     return left * (new.force + 0.5 * max(stiffness, 0.0) * left)
+
+
+def _is_long(state: CohesiveState, at: float, tension: float) -> bool:
+    """Whether a step with a jump to the indentation `at` is too long, wherever it jumps."""
+    length = abs(at - state.indentation)
+    alone = length > _ALONE * law_of(state.contact).equilibrium_separation
+    return (alone and _earlier(state, at) is None) or _misses_tension(state, length, tension)
 
 
 def _misses_tension(state: CohesiveState, length: float, tension: float) -> bool:
