@@ -70,7 +70,6 @@ def minimise_locally(
     tolerance: float,
     zero_mean: bool = False,
     secant: Secant | None = None,
-    reach: float = math.inf,
 ) -> LocalMinimum:
     """Descend from (p, u) to a local minimum of ½ uᵀK⁻¹u + Σ φ(u), where `potential` returns φ.
 
@@ -79,12 +78,11 @@ def minimise_locally(
     `LocalMinimum.residual`. With `zero_mean`, K maps constant arrays to zero, the minimum is sought
     among all u of mean zero, and the mean of p is chosen so that the gradient has mean zero. With
     `secant`, Newton steps use its result for φ″, where φ′ grows so fast that the tangent is poor.
-    The method stops where u would change by more than `reach`. If it does not converge, `converged`
-    of the result is False.
+    If the method does not converge, `converged` of the result is False.
     """
     phi, slope, k = potential(u)
     energy = 0.5 * dot(p, u) + float(phi.sum())
-    radius, negative, steps, begin = math.inf, False, 0, u
+    radius, negative, steps = math.inf, False, 0
     while True:
         r = p + slope
         if zero_mean:
@@ -102,8 +100,6 @@ def minimise_locally(
         size = math.sqrt(max(dot(x, Sx), 0.0))
         new_p = p + Sx
         new_u = K(new_p)  # in double precision; the products within a step are in single precision
-        if reach < math.inf and float(np.abs(new_u - begin).max()) > reach:
-            break
         phi, new_slope, new_k = potential(new_u)
         new_energy = 0.5 * dot(new_p, new_u) + float(phi.sum())
         change = new_energy - energy

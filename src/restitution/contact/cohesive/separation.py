@@ -27,6 +27,9 @@ from restitution.numerics.quadrature import integrate_curve
 _RESIDUAL = 1e-8  # tolerance of the solves under tension and at rest
 # States are inserted at the largest tension until it agrees with its parabola within this fraction.
 _PEAK, _MOST_INSERTED = 1e-3, 4
+# Nodes that part one by one make several largest tensions. So a state is inserted on either side of
+# the largest where the next one is farther than this multiple of z₀.
+_APART = 0.1
 _FARTHEST = 0.02  # unloading ends where the tension is below this fraction of the largest tension
 # States are compared with those of a known unloading at this many indentations. They are the same
 # if their displacements differ by at most this fraction of z₀.
@@ -42,7 +45,7 @@ def separate_cohesive(
     guide this one. If neither has yielded and both come to the same equilibrium, the states below
     it are taken from `known`.
     """
-    yield from _with_largest_tension(_separating(state, accuracy, known))
+    yield from _between_nodes(_with_largest_tension(_separating(state, accuracy, known)))
 
 
 def _separating(
@@ -111,6 +114,25 @@ def _with_largest_tension(path: Iterator[CohesiveState]) -> Iterator[CohesiveSta
     yield b
 
 
+def _between_nodes(path: Iterator[CohesiveState]) -> Iterator[CohesiveState]:
+    """Yield `path`, with a state inserted on either side of the largest tension."""
+    held: list[CohesiveState] = []  # from the state before that of the largest tension
+    tension = 0.0
+    for state in path:
+        if -state.force > tension:
+            tension = -state.force
+            yield from held[:-1]
+            held = held[-1:]
+        held.append(state)
+    k = min(range(len(held)), key=lambda i: held[i].force)
+    top, inserted = held[k], []
+    for end in (*held[max(k - 1, 0) : k], *held[k + 1 : k + 2]):
+        way = abs(end.indentation - top.indentation)
+        if end.jumps == top.jumps and way > _APART * law_of(top.contact).equilibrium_separation:
+            inserted.append(_between(end, top, 0.5 * (end.indentation + top.indentation)))
+    yield from sorted([*held, *inserted], key=lambda state: -state.indentation)
+
+
 def _peak(a: CohesiveState | None, b: CohesiveState, c: CohesiveState) -> Iterator[CohesiveState]:
     """Yield `b` and the states inserted beside it."""
     states = [b]
@@ -152,7 +174,9 @@ def _between(a: CohesiveState, b: CohesiveState, at: float) -> CohesiveState:
     """The equilibrium at an indentation between two states of one branch, near `b`."""
     share = (at - b.indentation) / (a.indentation - b.indentation)
     p = b.box_pressure + share * (reframe(a.box_pressure, a.box, b.box) - b.box_pressure)
-    new = solve_cohesive(b.contact, at, b.box, p=p, limit=b.bound, history=b, residual=_RESIDUAL)
+    new = solve_cohesive(
+        b.contact, at, b.box, start=(p, None), limit=b.bound, history=b, residual=_RESIDUAL
+    )
     return with_losses_of(b, new)
 
 

@@ -41,7 +41,7 @@ _CORRECTION = 10.0
 # displacement, and of unloading under pressure.
 _BETWEEN, _BACK = 1e-5, 1e-4
 # Under tension, at most this fraction of the length of a step in units of z₀, because short steps
-# are those before a jump.
+# are those before a jump, and less where the largest displacement is below z₀.
 _OF_STEP = 2e-5
 _FIRST_STEP = 0.25  # length of the first step, in units of the equilibrium separation z₀
 
@@ -52,7 +52,7 @@ _UNDER_TENSION, _NEAR, _TENSE, _SLIGHT = 0.4, 2.0, 0.4, 0.02
 # Largest relative error of the largest tension where it ends in a jump, but no step is made shorter
 # than _AT_FOLD z₀ for it.
 _AT_JUMP, _AT_FOLD = 3e-3, 0.01
-# Longest step with a jump after another jump, in units of z₀. The energy that a longer one loses may
+# Longest step with a jump after another jump, in units of z₀. The energy lost in a longer one may
 # be the error of the trapezium rule.
 _ALONE = 0.08
 _GROWTH = 3.0  # largest ratio of the lengths of two steps
@@ -174,8 +174,7 @@ def follow(
     must stop the iteration. The solves start from the changes along `guide`. Raises
     `NotConvergedError` if an equilibrium cannot be followed.
     """
-    law, pair = law_of(state.contact), state.contact.pair
-    z0 = law.equilibrium_separation
+    z0 = law_of(state.contact).equilibrium_separation
     sign = 1.0 if target > state.indentation else -1.0
     shortest = _FIRST_STEP * z0
     if state.smallest_gap < 1.1 * z0:  # the bodies touch
@@ -266,7 +265,8 @@ def _tolerance(state: CohesiveState, at: float) -> float:
     z0 = law_of(state.contact).equilibrium_separation
     if state.smallest_gap > _NEAR * z0:  # the forces of bodies far apart are small
         return 0.0
-    return min(_BETWEEN, _OF_STEP * abs(at - state.indentation) / z0)
+    deformed = min(float(np.abs(state.box_displacement).max()) / z0, 1.0)
+    return min(_BETWEEN, _OF_STEP * deformed * abs(at - state.indentation) / z0)
 
 
 def _allowed(
@@ -346,9 +346,15 @@ def _try(
 ) -> _Step:
     contact, box = state.contact, state.box
     limit, convolutions = contact.plasticity.bound_after(state, at, residual)
-    p, u = _start(state, at, guide)
     new = solve_cohesive(
-        contact, at, box, p=p, u=u, limit=limit, history=state, residual=residual, reach=reach
+        contact,
+        at,
+        box,
+        start=_start(state, at, guide),
+        limit=limit,
+        history=state,
+        residual=residual,
+        reach=reach,
     )
     plastic, plastic_error = contact.plasticity.work(state, new)
     new = replace(
