@@ -223,7 +223,13 @@ def beside(python: str, nodes: int = 128, steps: int = 40) -> str:
             guess = 2 * p - earlier
         began = time.process_time()
         state = solve_cohesive(
-            contact, depth, box, p=guess, limit=math.inf, history=None, residual=residual
+            contact,
+            depth,
+            box,
+            start=(guess, None),
+            limit=math.inf,
+            history=None,
+            residual=residual,
         )
         seconds.append(time.process_time() - began)
         earlier, p = p, state.box_pressure

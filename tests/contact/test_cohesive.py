@@ -15,6 +15,7 @@ from contact_keys import contact_of
 from restitution.collision import collide
 from restitution.contact.bodies import Body, Pair
 from restitution.contact.cohesive import steps as cohesive_steps
+from restitution.contact.cohesive.equilibrium import CohesiveState, FarEquilibriumError
 from restitution.contact.cohesive.law import Cohesive
 from restitution.contact.cohesive.loading import load_cohesive, load_until
 from restitution.contact.cohesive.separation import separation_of
@@ -274,6 +275,43 @@ def test_each_step_adds_its_error(monkeypatch):
             lost = max(trial.by_trapezium - trial.change, 0.0)
             assert added == approx(min(trial.uncertainty, max(lost, abs(trial.change))), rel=1e-9)
             assert added > 0
+
+
+def test_a_jump_is_bracketed_by_solves_that_end_early(monkeypatch):
+    """Solves that would pass the jump end near the branch; states beyond it are used again."""
+    tried, make = [], cohesive_steps._try
+
+    def watched(state, at, residual, guide, reach):
+        try:
+            step = make(state, at, residual, guide, reach)
+        except FarEquilibriumError as far:
+            tried.append(("left", far.convolutions))
+            raise
+        kind = "known" if isinstance(guide, CohesiveState) else "solved"
+        tried.append((kind, step.state.convolutions))
+        return step
+
+    monkeypatch.setattr(cohesive_steps, "_try", watched)
+    states = [*approach(sphere(1.0, 1.0))]
+    assert states[-1].jumps == 1
+    spent = {kind: [n for name, n in tried if name == kind] for kind, _ in tried}
+    assert max(spent["left"]) < 0.5 * max(spent["solved"])
+    assert sum(spent["known"]) <= len(spent["known"])
+    # The path counts all of them, and those of larger boxes.
+    path = sum(state.convolutions for state in states)
+    assert sum(n for kind in spent.values() for n in kind) == approx(path, rel=0.005)
+
+
+@pytest.mark.parametrize("of_step", [0.0, 2e-6, 2e-5])
+def test_a_step_after_a_jump_loses_no_energy_by_its_length(monkeypatch, of_step):
+    """Steps of 0.25 z0 lost four times as much, and had a pull-off force 3 % too small."""
+    monkeypatch.setattr(cohesive_steps, "_OF_STEP", of_step)
+    contact = sphere(1.2, 4.0, rough=1.0, seed=5)
+    state = load_cohesive(contact, 4 * Z0, start=None, residual=1e-8)
+    found = separation_of([*unloading_path(state)])
+    # Steps 25 times finer lose 1.05e-17 J.
+    assert state.adhesive_loss < 1.05e-17 + state.work_error
+    assert found.pull_off_force == approx(2.8532e-5, rel=1e-3)
 
 
 def test_increments_of_plastic_work_add_their_error(monkeypatch):

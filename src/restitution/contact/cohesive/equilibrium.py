@@ -45,6 +45,14 @@ _UNIQUE = 0.7
 _TANGENT = 1e-3
 
 
+class FarEquilibriumError(Exception):
+    """No equilibrium within the reach of a solve, which took `convolutions`."""
+
+    def __init__(self, convolutions: int) -> None:
+        super().__init__(convolutions)
+        self.convolutions = convolutions
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class CohesiveState(State):
     """A state with an attraction of finite range.
@@ -168,28 +176,36 @@ def solve_cohesive(
     indentation: float,
     box: Box,
     *,
-    p: Array,
-    u: Array | None = None,
+    start: tuple[Array, Array | None],
     limit: Array | float,
     history: State | None,
     residual: float,
+    reach: float = math.inf,
 ) -> CohesiveState:
-    """Find an equilibrium on `box`, by descending from the pressure `p` to lower energies.
+    """Find an equilibrium on `box`, by descending from the pressure of `start` to lower energies.
 
-    `u` is the displacement due to `p`; None to compute it. The caller updates works and losses.
-    Raises `NotConvergedError`, and `DomainError` if the pressure of elastic periodic bodies exceeds
-    E*.
+    `start` has also the displacement due to the pressure; None to compute it. The caller updates
+    works and losses. Raises `FarEquilibriumError` if the displacement of a node would change by
+    more than `reach` (m), `NotConvergedError`, and `DomainError` if the pressure of elastic
+    periodic bodies exceeds E*.
     """
     K = _operator(contact, box)
     before = np.zeros(contact.grid.nodes) if history is None else history.plastic_displacement
     upper = limit[box] if isinstance(limit, np.ndarray) else limit
     law = BoundedLaw(contact, _base(contact, indentation, box, before), upper, box)
     z0 = law_of(contact).equilibrium_separation
+    p, begin = start[0], K(start[0]) if start[1] is None else start[1]
+
+    def near(u: Array) -> tuple[Array, Array, Array]:
+        if float(np.abs(u - begin).max()) > reach:
+            raise FarEquilibriumError(K.count)
+        return law(u)
+
     solved = minimise_locally(
         K,
-        law,
+        near if reach < math.inf else law,
         p=p,
-        u=K(p) if u is None else u,
+        u=begin,
         length=0.5 * z0,
         tolerance=max(_TOLERANCE * residual, _LEAST_TOLERANCE) * z0,
         zero_mean=contact.periodic,
@@ -249,7 +265,7 @@ def rigid_start(contact: Contact, *, limit: Array | float, residual: float) -> C
         box = interacting_box(contact, indentation)
         p = rigid_pressure(contact, indentation, box)
         state = solve_cohesive(
-            contact, indentation, box, p=p, limit=limit, history=None, residual=residual
+            contact, indentation, box, start=(p, None), limit=limit, history=None, residual=residual
         )
         convolutions += state.convolutions
         if is_unique(state):
@@ -304,7 +320,13 @@ def on_box(state: CohesiveState, box: Box, *, residual: float) -> CohesiveState:
         rigid_pressure(contact, indentation, box),
     )
     new = solve_cohesive(
-        contact, indentation, box, p=p, limit=state.bound, history=state, residual=residual
+        contact,
+        indentation,
+        box,
+        start=(p, None),
+        limit=state.bound,
+        history=state,
+        residual=residual,
     )
     plastic, error = contact.plasticity.work(state, new)
     return replace(

@@ -28,6 +28,10 @@ from restitution.numerics.quadrature import integrate_curve
 _RESIDUAL = 1e-8  # tolerance of the solves under tension and at rest
 # States are inserted at the largest tension until it agrees with its parabola within this fraction.
 _PEAK, _MOST_INSERTED = 1e-3, 4
+# Nodes that part one by one make several largest tensions. So a state is inserted on either side of
+# the largest where the next one is farther than _APART z₀, and again if a force differs from that of
+# the parabola by more than the fraction _SMOOTH.
+_APART, _ROUNDS, _SMOOTH = 0.03, 4, 3e-4
 _FARTHEST = 0.02  # unloading ends where the tension is below this fraction of the largest tension
 # States are compared with those of a known unloading at this many indentations. They are the same
 # if their displacements differ by at most this fraction of z₀.
@@ -43,7 +47,7 @@ def separate_cohesive(
     guide this one. If neither has yielded and both come to the same equilibrium, the states below
     it are taken from `known`.
     """
-    yield from _with_largest_tension(_separating(state, accuracy, known))
+    yield from _between_nodes(_with_largest_tension(_separating(state, accuracy, known)))
 
 
 def _separating(
@@ -113,6 +117,42 @@ def _with_largest_tension(path: Iterator[CohesiveState]) -> Iterator[CohesiveSta
     yield b
 
 
+def _between_nodes(path: Iterator[CohesiveState]) -> Iterator[CohesiveState]:
+    """Yield `path`, with states inserted on either side of the largest tension."""
+    held: list[CohesiveState] = []  # from the state before that of the largest tension
+    tension = 0.0
+    for state in path:
+        if -state.force > tension:
+            tension = -state.force
+            yield from held[:-1]
+            held = held[-1:]
+        held.append(state)
+    for _ in range(_ROUNDS):
+        k = min(range(len(held)), key=lambda i: held[i].force)
+        top, ends = held[k], (*held[max(k - 1, 0) : k], *held[k + 1 : k + 2])
+        inserted = [_between(end, top, at) for end in ends if (at := _halfway(end, top))]
+        held = sorted([*held, *inserted], key=lambda state: -state.indentation)
+        if len(ends) < 2 or all(_on_parabola(ends[0], top, ends[1], new) for new in inserted):
+            break
+    yield from held
+
+
+def _halfway(end: CohesiveState, top: CohesiveState) -> float | None:
+    """Indentation between two states of one branch; None if they are near each other."""
+    way = abs(end.indentation - top.indentation)
+    near = way <= _APART * law_of(top.contact).equilibrium_separation
+    return None if near or end.jumps != top.jumps else 0.5 * (end.indentation + top.indentation)
+
+
+def _on_parabola(a: CohesiveState, b: CohesiveState, c: CohesiveState, new: CohesiveState) -> bool:
+    """Whether the force of `new` is that of the parabola through three states."""
+    x = np.array([state.indentation - b.indentation for state in (a, b, c)])
+    expected = np.polyval(
+        np.polyfit(x, [a.force, b.force, c.force], 2), new.indentation - b.indentation
+    )
+    return bool(abs(new.force - expected) <= _SMOOTH * abs(expected))
+
+
 def _peak(a: CohesiveState | None, b: CohesiveState, c: CohesiveState) -> Iterator[CohesiveState]:
     """Yield `b` and the states inserted beside it."""
     states = [b]
@@ -154,7 +194,9 @@ def _between(a: CohesiveState, b: CohesiveState, at: float) -> CohesiveState:
     """The equilibrium at an indentation between two states of one branch, near `b`."""
     share = (at - b.indentation) / (a.indentation - b.indentation)
     p = b.box_pressure + share * (reframe(a.box_pressure, a.box, b.box) - b.box_pressure)
-    new = solve_cohesive(b.contact, at, b.box, p=p, limit=b.bound, history=b, residual=_RESIDUAL)
+    new = solve_cohesive(
+        b.contact, at, b.box, start=(p, None), limit=b.bound, history=b, residual=_RESIDUAL
+    )
     return with_losses_of(b, new)
 
 

@@ -10,12 +10,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from restitution.contact.checks.edge import require_inside_grid
 from restitution.contact.cohesive.equilibrium import (
     CohesiveState,
+    FarEquilibriumError,
     interacting_box,
     law_of,
     on_box,
@@ -38,6 +40,9 @@ _CORRECTION = 10.0
 # Tolerances of the solves of loading between the given depths, whose errors can become plastic
 # displacement, and of unloading under pressure.
 _BETWEEN, _BACK = 1e-5, 1e-4
+# Under tension, at most this fraction of the length of a step in units of z₀, because short steps
+# are those before a jump, and less where the largest displacement is below z₀.
+_OF_STEP = 2e-5
 _FIRST_STEP = 0.25  # length of the first step, in units of the equilibrium separation z₀
 
 # Longest step under tension, as a fraction of the sum of z₀ and the adhesive length, while the gap
@@ -47,8 +52,16 @@ _UNDER_TENSION, _NEAR, _TENSE, _SLIGHT = 0.4, 2.0, 0.4, 0.02
 # Largest relative error of the largest tension where it ends in a jump, but no step is made shorter
 # than _AT_FOLD z₀ for it.
 _AT_JUMP, _AT_FOLD = 3e-3, 0.01
+# Longest step with a jump after another jump, in units of z₀. The energy lost in a longer one may
+# be the error of the trapezium rule.
+_ALONE = 0.08
 _GROWTH = 3.0  # largest ratio of the lengths of two steps
 _NEARLY = 0.8  # a step of this share of the way that is left goes all the way
+# A solve that may pass a jump ends where a node moves by this distance, in units of z₀, from its
+# start. In lactose with Rq 0.15 nm the largest change was below 0.35 z₀ on the branch, and above
+# 1.2 z₀ after a jump.
+_REACH = 0.5
+_MOST_AHEAD = 4  # states that are kept
 # Shortest step, in units of z₀. If even this step fails, the path cannot be followed, and an error
 # is raised.
 _LEAST_STEP = 1e-5
@@ -59,6 +72,8 @@ _MOST_STEPS = 5000
 _WIDER = 1.5
 # In unloading it shrinks where this share of its nodes suffices.
 _NARROWER = 0.4
+
+_Limit = Callable[[CohesiveState, CohesiveState], float]  # of the error (J) of a step
 
 
 @dataclass(frozen=True)
@@ -74,6 +89,74 @@ class _Step:
     by_quartic: float
     change: float
     uncertainty: float
+
+    @classmethod
+    def of(cls, state: CohesiveState, new: CohesiveState) -> _Step:
+        previous = _earlier(state, new.indentation)
+        way, force, before = new.indentation - state.indentation, new.force, state.force
+        trapezium = 0.5 * (force + before) * way
+        change = new.potential_energy - state.potential_energy
+        return cls(
+            new,
+            trapezium,
+            trapezium if previous is None else _quartic(previous, state, new),
+            change + new.plastic_work - state.plastic_work,
+            0.5 * abs(force - before) * abs(way),
+        )
+
+    @property
+    def off(self) -> float:
+        """Work of the force (J) minus the change of energy."""
+        return self.by_quartic - self.change
+
+    def is_smooth(self, allowed: float) -> bool:
+        correction = abs(self.by_quartic - self.by_trapezium)
+        return abs(self.off) <= allowed and correction <= _CORRECTION * allowed
+
+
+class _Ahead:
+    """What solves that were not accepted have shown of the way ahead.
+
+    `left` is the nearest indentation (m) at which a solve has left the branch; None if unknown.
+    """
+
+    def __init__(self, sign: float) -> None:
+        self.left: float | None = None
+        self._sign = sign
+        self._states: list[CohesiveState] = []  # the nearest is the last
+        self._allowed = 0.0
+        self._compared: CohesiveState | None = None
+
+    def reject(self, new: CohesiveState, allowed: float) -> None:
+        self.left, self._allowed = new.indentation, allowed
+        if self._states and self._states[-1].indentation == new.indentation:
+            self._states.pop()
+        self._states = [*self._states[1 - _MOST_AHEAD :], new]
+
+    def pass_to(self, state: CohesiveState, smooth: bool) -> None:
+        at = self._sign * state.indentation
+        while self._states and self._sign * self._states[-1].indentation <= at:
+            self._states.pop()
+        if not smooth or (self.left is not None and self._sign * self.left <= at):
+            self.left = None
+
+    def joined(self, state: CohesiveState, limit: _Limit) -> CohesiveState | None:
+        """The nearest known state, if it is on the branch of `state`, as far as energies show."""
+        if not self._states or self._compared is state:
+            return None
+        self._compared, nearest = state, self._states[-1]
+        return nearest if _Step.of(state, nearest).is_smooth(limit(state, nearest)) else None
+
+    def next(self, state: CohesiveState, tension: float) -> tuple[float, float]:
+        """Where the next solve is to end, and how far it may go from its start (m)."""
+        assert self.left is not None
+        z0 = law_of(state.contact).equilibrium_separation
+        width = abs(self.left - state.indentation)
+        jump = abs(self._states[-1].force - state.force)
+        near = 0.5 * jump * width <= self._allowed and not _is_long(state, self.left, tension)
+        if near or width <= 2 * _LEAST_STEP * z0:
+            return self.left, math.inf
+        return 0.5 * (state.indentation + self.left), _REACH * z0
 
 
 def follow(
@@ -93,8 +176,7 @@ def follow(
     must stop the iteration. `goal` estimates the target from each state anew. The solves start from
     the changes along `guide`. Raises `NotConvergedError` if an equilibrium cannot be followed.
     """
-    law, pair = law_of(state.contact), state.contact.pair
-    z0 = law.equilibrium_separation
+    z0 = law_of(state.contact).equilibrium_separation
     sign = 1.0 if target > state.indentation else -1.0
     shortest = _FIRST_STEP * z0
     if state.smallest_gap < 1.1 * z0:  # the bodies touch
@@ -108,57 +190,58 @@ def follow(
             later, earlier = earlier, _earlier(earlier, target)
     rejected = 0  # convolutions of steps that were not accepted
     tension = 0.0
+    ahead = _Ahead(sign)
     require_inside_grid(state)
     for _ in range(_MOST_STEPS):
         target = target if goal is None else goal(state)
+        limit = partial(_allowed, accuracy=accuracy, scale=scale, target=target)
         left = abs(target - state.indentation)
         if left == 0:
             return
-        if state.force < 0 and state.smallest_gap < _NEAR * z0:
-            # Do not step over the largest tension.
-            length = min(length, _UNDER_TENSION * (z0 + law.length(pair)))
-        elif sign < 0 and state.force > 0 and state.before is not None:
-            length = min(length, _to_tension(state, length))
-        last = length >= _NEARLY * left
-        at = target if last else state.indentation + sign * min(length, 0.5 * left)
-        if guide is not None and not last:
-            at = guide.stop(state.indentation, at)
-        length = abs(at - state.indentation)
+        tension = max(tension, -state.force)
+        reach = math.inf
+        known = ahead.joined(state, limit)
+        if known is not None:
+            at = known.indentation
+        elif ahead.left is not None:
+            at, reach = ahead.next(state, tension)
+        else:
+            at = _next(state, target, length)
+            if guide is not None and at != target:
+                at = guide.stop(state.indentation, at)
+        length, last = abs(at - state.indentation), at == target
         state_on = _on_fitting_box(state, at, target, residual)
         if state_on is not state:
             rejected += state_on.convolutions
             state = state_on
         try:
-            fine = last or state.force <= 0  # the forces of bodies far apart are small
-            loose = _BETWEEN if sign > 0 else _BACK
-            step = _try(state, at, residual if fine else max(residual, loose), guide)
+            loose = residual if last else max(residual, _tolerance(state, at))
+            step = _try(state, at, loose, known or guide, reach)
+        except FarEquilibriumError as left_branch:
+            rejected += left_branch.convolutions
+            ahead.left = at
+            continue
         except NotConvergedError:
             if length <= 8 * _LEAST_STEP * z0:
                 raise
             length /= 4
+            ahead.left = None
             continue
         new = step.state
-        here = reference_energy(new, loading=sign > 0)
-        if new.force > 0 and state.force > 0:
-            ahead = _work_ahead(state, new, target) if sign > 0 else 0.0
-            allowed = accuracy * max(scale, here + ahead)
-        else:
-            allowed = accuracy * max(_TENSE * here, _SLIGHT * scale)
-        off = step.by_quartic - step.change
-        correction = abs(step.by_quartic - step.by_trapezium)
-        smooth = abs(off) <= allowed and correction <= _CORRECTION * allowed
-        tension = max(tension, -state.force)
-        coarse = step.uncertainty > allowed or _misses_tension(state, length, tension)
+        allowed = limit(state, new)
+        smooth = step.is_smooth(allowed)
+        coarse = step.uncertainty > allowed or _is_long(state, at, tension)
         if not smooth and coarse and length > _LEAST_STEP * z0:
-            length /= 2 if step.uncertainty < 4 * allowed else 4
+            ahead.reject(new, allowed)
             rejected += new.convolutions
             continue
         state = _accounted(state, step, smooth)
         require_inside_grid(state)
         yield replace(state, convolutions=state.convolutions + rejected)
         rejected = 0
+        ahead.pass_to(state, smooth)
         if smooth:
-            room = allowed / max(abs(off), 1e-300)
+            room = allowed / max(abs(step.off), 1e-300)
             length *= min(_GROWTH, max(0.5, 0.8 * room ** (1 / 4)))
         else:
             length = max(2 * length, shortest)
@@ -168,6 +251,42 @@ def follow(
     )
 
 
+def _next(state: CohesiveState, target: float, length: float) -> float:
+    """Indentation (m) at the end of a step of about `length` (m) towards `target`."""
+    law, z0 = law_of(state.contact), law_of(state.contact).equilibrium_separation
+    left = abs(target - state.indentation)
+    if state.force < 0 and state.smallest_gap < _NEAR * z0:
+        # Do not step over the largest tension.
+        length = min(length, _UNDER_TENSION * (z0 + law.length(state.contact.pair)))
+    elif target < state.indentation and state.force > 0 and state.before is not None:
+        length = min(length, _to_tension(state, length))
+    if length >= _NEARLY * left:
+        return target
+    return state.indentation + math.copysign(min(length, 0.5 * left), target - state.indentation)
+
+
+def _tolerance(state: CohesiveState, at: float) -> float:
+    """Tolerance of a solve at the indentation `at` between the given depths."""
+    if state.force > 0:
+        return _BETWEEN if at > state.indentation else _BACK
+    z0 = law_of(state.contact).equilibrium_separation
+    if state.smallest_gap > _NEAR * z0:  # the forces of bodies far apart are small
+        return 0.0
+    deformed = min(float(np.abs(state.box_displacement).max()) / z0, 1.0)
+    return min(_BETWEEN, _OF_STEP * deformed * abs(at - state.indentation) / z0)
+
+
+def _allowed(
+    state: CohesiveState, new: CohesiveState, *, accuracy: float, scale: float, target: float
+) -> float:
+    """Largest accepted error (J) of the step from `state` to `new`."""
+    loading = new.indentation > state.indentation
+    here = reference_energy(new, loading=loading)
+    if new.force > 0 and state.force > 0:
+        return accuracy * max(scale, here + (_work_ahead(state, new, target) if loading else 0.0))
+    return accuracy * max(_TENSE * here, _SLIGHT * scale)
+
+
 def _work_ahead(state: CohesiveState, new: CohesiveState, target: float) -> float:
     """Lower bound of the work (J) from `new` to `target`, because the contact stiffens."""
     if math.isinf(target):
@@ -175,6 +294,13 @@ def _work_ahead(state: CohesiveState, new: CohesiveState, target: float) -> floa
     left = target - new.indentation
     stiffness = (new.force - state.force) / (new.indentation - state.indentation)
     return left * (new.force + 0.5 * max(stiffness, 0.0) * left)
+
+
+def _is_long(state: CohesiveState, at: float, tension: float) -> bool:
+    """Whether a step with a jump to the indentation `at` is too long, wherever it jumps."""
+    length = abs(at - state.indentation)
+    alone = length > _ALONE * law_of(state.contact).equilibrium_separation
+    return (alone and _earlier(state, at) is None) or _misses_tension(state, length, tension)
 
 
 def _misses_tension(state: CohesiveState, length: float, tension: float) -> bool:
@@ -218,27 +344,25 @@ def _earlier(state: CohesiveState, at: float) -> CohesiveState | None:
     return before
 
 
-def _try(state: CohesiveState, at: float, residual: float, guide: Guide | None) -> _Step:
+def _try(
+    state: CohesiveState,
+    at: float,
+    residual: float,
+    guide: Guide | CohesiveState | None,
+    reach: float = math.inf,
+) -> _Step:
     contact, box = state.contact, state.box
     limit, convolutions = contact.plasticity.bound_after(state, at, residual)
-    previous = _earlier(state, at)
-    p = state.box_pressure
-    u: Array | None = state.box_displacement
-    change = None if guide is None else guide.change(state.indentation, at, box)
-    if change is not None:
-        p, u = p + change, None
-    elif previous is not None:
-        ratio = (at - state.indentation) / (state.indentation - previous.indentation)
-        if previous.box == box:
-            p = p + ratio * (p - previous.box_pressure)
-            u = state.box_displacement + ratio * (
-                state.box_displacement - previous.box_displacement
-            )
-        else:
-            known = reframe(np.ones(shape_of(previous.box), dtype=bool), previous.box, box)
-            change = p - reframe(previous.box_pressure, previous.box, box)
-            p, u = p + ratio * np.where(known, change, 0.0), None
-    new = solve_cohesive(contact, at, box, p=p, u=u, limit=limit, history=state, residual=residual)
+    new = solve_cohesive(
+        contact,
+        at,
+        box,
+        start=_start(state, at, guide),
+        limit=limit,
+        history=state,
+        residual=residual,
+        reach=reach,
+    )
     plastic, plastic_error = contact.plasticity.work(state, new)
     new = replace(
         new,
@@ -246,16 +370,35 @@ def _try(state: CohesiveState, at: float, residual: float, guide: Guide | None) 
         work_error=state.work_error + plastic_error,
         convolutions=new.convolutions + convolutions,
     )
-    way, force, before = at - state.indentation, new.force, state.force
-    trapezium = 0.5 * (force + before) * way
-    quartic = trapezium if previous is None else _quartic(previous, state, new)
-    return _Step(
-        new,
-        trapezium,
-        quartic,
-        new.potential_energy - state.potential_energy + plastic,
-        0.5 * abs(force - before) * abs(way),
-    )
+    return _Step.of(state, new)
+
+
+def _start(
+    state: CohesiveState, at: float, guide: Guide | CohesiveState | None
+) -> tuple[Array, Array | None]:
+    """Pressure and displacement from which the solve at the indentation `at` begins.
+
+    `guide` is the path of other bodies, or a state at `at`.
+    """
+    box, p = state.box, state.box_pressure
+    if isinstance(guide, CohesiveState):
+        if guide.box == box:
+            return guide.box_pressure, guide.box_displacement
+        return reframe(guide.box_pressure, guide.box, box), None
+    change = None if guide is None else guide.change(state.indentation, at, box)
+    if change is not None:
+        return p + change, None
+    previous = _earlier(state, at)
+    if previous is None:
+        return p, state.box_displacement
+    ratio = (at - state.indentation) / (state.indentation - previous.indentation)
+    if previous.box == box:
+        u = state.box_displacement
+        p = p + ratio * (p - previous.box_pressure)
+        return p, u + ratio * (u - previous.box_displacement)
+    inside = reframe(np.ones(shape_of(previous.box), dtype=bool), previous.box, box)
+    change = p - reframe(previous.box_pressure, previous.box, box)
+    return p + ratio * np.where(inside, change, 0.0), None
 
 
 def _quartic(previous: CohesiveState, state: CohesiveState, new: CohesiveState) -> float:
