@@ -28,9 +28,9 @@ from restitution.numerics.quadrature import integrate_curve
 _RESIDUAL = 1e-8  # tolerance of the solves under tension and at rest
 # States are inserted at the largest tension until it agrees with its parabola within this fraction.
 _PEAK, _MOST_INSERTED = 1e-3, 4
-# Nodes that part one by one make several largest tensions. So a state is inserted on either side of
-# the largest where the next one is farther than _APART z₀, and again if a force differs from that of
-# the parabola by more than the fraction _SMOOTH.
+# Nodes that part one by one make several largest tensions. So a state is inserted on either side
+# of the largest where the next one is farther than _APART z₀, and again if a force differs from
+# that of the parabola by more than the fraction _SMOOTH.
 _APART, _ROUNDS, _SMOOTH = 0.03, 4, 3e-4
 _FARTHEST = 0.02  # unloading ends where the tension is below this fraction of the largest tension
 # States are compared with those of a known unloading at this many indentations. They are the same
