@@ -1,11 +1,13 @@
 """A model of plasticity and a law of adhesion of one's own, each in one file, without a change."""
 
+from itertools import groupby, pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
 from own_exponential import Exponential
 from own_soft_ring import SoftOutside
+from scipy.interpolate import PchipInterpolator
 
 import restitution as rs
 from restitution.contact.checks.inputs import doubtful, impossible
@@ -26,6 +28,15 @@ def test_a_model_is_one_short_file(name):
 def work_of(path):
     """Work (J) of the force along a path, by the trapezium rule."""
     return np.trapezoid([s.force for s in path], [s.indentation for s in path])
+
+
+def work_with_jumps(path):
+    """Work (J) of the force along a path: cubics between jumps, the trapezium rule in them."""
+    work = 0.0
+    for _, states in groupby(path, key=lambda state: state.jumps):
+        x, force = np.array(sorted((state.indentation, state.force) for state in states)).T
+        work -= PchipInterpolator(x, force).integrate(x[0], x[-1]) if len(x) > 1 else 0.0
+    return work + sum(work_of(pair) for pair in pairwise(path) if pair[0].jumps != pair[1].jumps)
 
 
 @pytest.fixture(scope="module")
@@ -88,7 +99,7 @@ def test_a_law_of_traction_keeps_the_energy_balance(sticky):
     end = back[-1]
     given = state.potential_energy - end.potential_energy
     lost = end.adhesive_loss - state.adhesive_loss
-    assert -work_of(back) == approx(given - lost, rel=0.02)
+    assert -work_with_jumps(back) == approx(given - lost, rel=0.002)
     assert abs(end.unaccounted) < 2e-3 * state.stored_energy
     collision = rs.collide(state, back)
     assert collision.unloading_work == approx(state.potential_energy - lost, rel=1e-9)

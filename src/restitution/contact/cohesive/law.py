@@ -88,7 +88,7 @@ class CohesiveLaw(Adhesion):
     bytes_per_node = 1800.0  # up to 100 states are kept, with 16 bytes per node each
     follows_path = True
     steep = True
-    work_tolerance: float = ACCURACY
+    work_tolerance = ACCURACY  # error of a step of loading, relative to its energies
 
     @abstractmethod
     def energy(self, gap: Array) -> Array:
