@@ -64,18 +64,19 @@ def draw(seed: int) -> tuple[str, Contact, float, float]:
     return name, Contact(pair, surface, adhesion=law), rolloff, shortest
 
 
-def impact(contact: Contact, work: float, depth: float) -> Array:
-    """Pull-off force (N), lost energy (J) and COR after loading to `work` (J) near `depth` (m)."""
+def impact(contact: Contact, work: float, depth: float) -> Collision:
+    """Load to `work` (J) near `depth` (m), and unload."""
     state = None
     for _ in range(12):
         new = solve(contact, depth, start=state)
         if new.loading_work >= work:
             break
         state, depth = new, depth * 1.15
-    return outcome(collide(new), work)
+    return collide(new)
 
 
 def outcome(collision: Collision, work: float) -> Array:
+    """Pull-off force (N), lost energy (J) and COR."""
     lost = collision.loading_work - collision.unloading_work
     return np.array([collision.pull_off_force, lost, math.sqrt(max(1 - lost / work, 0.0))])
 
@@ -100,17 +101,20 @@ def resolved(direct: Contact) -> tuple[Contact, int]:
     return contact, factor
 
 
-def error_of(contact: Contact, coarser: Contact, here: Array, work: float, depth: float) -> Array:
-    """Error as that of a run: larger cells, other surfaces, single patches, and sticking."""
-    law = contact.adhesion
+def error_of(
+    contact: Contact, coarser: Contact, own: Collision, work: float, depth: float
+) -> Array:
+    """Error as that of a run: steps, larger cells, other surfaces, single patches, and sticking."""
+    law, here = contact.adhesion, outcome(own, work)
     alone = [replace(law, patches=(patch,)) for patch in law.patches]
     others = [replace(law, place=place) for place in range(1, SURFACES)]
     values = [
-        [impact(replace(contact, adhesion=other), work, depth) for other in laws]
+        [outcome(impact(replace(contact, adhesion=other), work, depth), work) for other in laws]
         for laws in (alone, others)
     ]
     single, other = np.array(values[0]), np.array([here, *values[1]])
-    parts = [here - impact(coarser, work, depth)]
+    steps = math.hypot(own.loading_work_error, own.unloading_work_error)
+    parts = [np.array([0.0, steps, 0.0]), here - outcome(impact(coarser, work, depth), work)]
     if len(single) > 1:
         parts.append(half_interval(len(single)) * single.std(axis=0, ddof=1))
     half = half_interval(len(other)) * other.std(axis=0, ddof=1)
@@ -129,16 +133,19 @@ def row_of(seed: int) -> dict[str, object]:
     collision = collide(solve(direct, depth))
     work = max(collision.loading_work, 1e-25)
     # An attraction may still do work at this depth: then the bodies go on to a work of nearly 0.
-    exact = outcome(collision, work) if collision.loading_work > 0 else impact(direct, work, depth)
+    if collision.loading_work <= 0:
+        collision = impact(direct, work, depth)
+    exact = outcome(collision, work)
     middle = time.process_time()
     coarse, factor = resolved(direct)
     # The gap of a patch at equilibrium counts as touching, so the depth is smaller.
     start = max(depth - 3 * float(direct.surface.height.std()), 0.3 * depth)
-    two = impact(coarse, work, start)
+    own = impact(coarse, work, start)
+    two = outcome(own, work)
     end = time.process_time()
     coarser = two_scales(direct, 2 * factor)
     coarser = replace(coarser, surface=replace(coarser.surface, provenance={COMPANION: True}))
-    error = error_of(coarse, coarser, two, work, start)
+    error = error_of(coarse, coarser, own, work, start)
     law = coarse.adhesion
     smooth = JKR(pair.radius, pair.contact_modulus, direct.adhesion.work_of_adhesion)
     radius = math.sqrt(pair.radius * law.length(pair) + 2 * pair.radius * law.reach)
