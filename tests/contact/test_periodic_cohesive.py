@@ -10,8 +10,18 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from contact_keys import contact_of
-from restitution import Body, Contact, Grid, Pair, Surface, solve, solve_at_pressure, step
-from restitution.contact.cohesive.equilibrium import box_gap, rigid_start
+from restitution import (
+    Body,
+    Contact,
+    Grid,
+    Pair,
+    Surface,
+    generate_surface,
+    solve,
+    solve_at_pressure,
+    step,
+)
+from restitution.contact.cohesive.equilibrium import box_gap, is_unique, rigid_start
 from restitution.contact.cohesive.law import Cohesive
 from restitution.contact.cohesive.separation import separation_of
 from restitution.contact.cohesive.steps import follow
@@ -246,3 +256,15 @@ def test_what_is_refused():
         solve(coarse, Z0)
     with pytest.raises(DomainError, match=r"indentation: .* the pressure exceeds E\*"):
         solve(rough(8, 1e-3), 0.6 * Z0)
+
+
+def test_soft_bodies_start_where_they_cannot_jump():
+    """At a gap of 2 z₀ these would jump together, in hundreds of steps."""
+    grid = Grid((64, 64), 6e-9)
+    shape = {"kind": "self-affine", "rms": 0.15e-9, "hurst": 0.8, "seed": 1}
+    surface = generate_surface(grid, shortest=18e-9, rolloff=40e-9, **shape)
+    contact = Contact(pair_of(4.4e9), surface, adhesion=Cohesive(0.08), periodic=True)
+    state = rigid_start(contact, limit=math.inf, residual=1e-8)
+    assert is_unique(state)
+    assert 2 * 0.3e-9 < 0.3e-9 - state.indentation < 6 * 0.3e-9
+    assert state.convolutions < 30

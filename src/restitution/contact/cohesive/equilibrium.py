@@ -260,6 +260,8 @@ def rigid_start(contact: Contact, *, limit: Array | float, residual: float) -> C
     """First state of a loading path, so far apart that the approach has dissipated no energy."""
     z0 = law_of(contact).equilibrium_separation
     gap, convolutions = 2 * z0, 0
+    while contact.periodic and not _is_unique_gap(contact, gap):
+        gap *= 1.5  # bodies that deform are closer still
     while True:
         indentation = z0 - gap
         box = interacting_box(contact, indentation)
@@ -344,13 +346,17 @@ def is_unique(state: CohesiveState) -> bool:
     sum is a bound. In a periodic contact the row sums of K vanish, and the bound is the compliance
     λ/(πE*) under the longest wave times max(−φ″).
     """
-    contact, law = state.contact, law_of(state.contact)
+    contact = state.contact
     if contact.periodic:
-        compliance = max(contact.grid.size) / (math.pi * contact.pair.contact_modulus)
-        return compliance * law.largest_softening(state.smallest_gap) < _UNIQUE
+        return _is_unique_gap(contact, state.smallest_gap)
     softening = np.maximum(-nodes_of(contact, state.box).stiffness(box_gap(state)), 0.0)
     K = _operator(contact, state.box)
     return float(K(softening).max()) < _UNIQUE
+
+
+def _is_unique_gap(contact: Contact, smallest_gap: float) -> bool:
+    compliance = max(contact.grid.size) / (math.pi * contact.pair.contact_modulus)
+    return compliance * law_of(contact).largest_softening(smallest_gap) < _UNIQUE
 
 
 def _operator(contact: Contact, box: Box) -> Convolution:
