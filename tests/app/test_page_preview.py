@@ -70,6 +70,23 @@ def test_the_preview_remains_below_a_curve_that_is_not_complete(adhesive):
     expect(page.locator("#cursor-text")).not_to_contain_text("preview")
 
 
+def test_the_answer_beyond_a_growing_curve_is_that_of_the_preview(adhesive, answer):
+    def begin_of_the_curve(lines):
+        last = lines[-1] | {"progress": "2 of 6 depths"}
+        del last["seconds"]
+        half = len(last["between"]["velocity"]) // 2
+        last["between"] = {name: values[:half] for name, values in last["between"].items()}
+        return [*previews(lines), last]
+
+    page = adhesive(begin_of_the_curve)
+    expect(page.locator("#status")).to_have_text(re.compile("^2 of 6 depths; the rest is a"))
+    slow, fast = (line["between"]["velocity"] for line in (answer[-1], previews(answer)[0]))
+    for velocity, detail in ((slow[1], "not complete yet"), (fast[-2], "A preview with the error")):
+        page.locator("#answer-velocity").fill(f"{velocity} m/s")
+        expect(page.locator("#answer-value")).to_have_text(re.compile(r"^e ≈ 0|^e ≈ 1"))
+        expect(page.locator("#answer-detail")).to_contain_text(detail)
+
+
 def test_the_curve_of_the_case_replaces_its_preview(page):
     computed(page)
     page.locator(ADHESION).fill("0.05 J/m^2")

@@ -41,10 +41,12 @@ export function drawAnswer() {
     $("answer-velocity").value = quantity(inside, "m/s", 3);
   }
   if (!exportTyped) $("code-velocity").value = $("answer-velocity").value;
-  const V = answerVelocity(), here = at(V, between);
+  // While the curve grows from its shallow end, the preview below it still answers at higher velocities.
+  const V = answerVelocity(), { under } = curve, own = at(V, between), rest = own || !under ? null : at(V, under.between);
+  const here = own || rest, shown = rest ? under : curve;
   $("answer-velocity").setAttribute("aria-invalid", String(V === null));
-  $("answer-value").textContent = here ? inDigits(V, here, curve) : "e = –";
-  $("answer-detail").replaceChildren(...(here ? detail(here, curve) : outside(V, between)));
+  $("answer-value").textContent = here ? inDigits(V, here, shown) : "e = –";
+  $("answer-detail").replaceChildren(...(here ? detail(here, shown) : outside(V, between)));
   $("answer-facts").replaceChildren(...facts(V, here).flatMap(([name, ...values]) => [element("dt", {}, name), element("dd", {}, ...values)]));
 }
 
