@@ -10,12 +10,17 @@ import pytest
 from points import point
 from restitution.case.below_grid import notice_of, refines_for_patches
 from restitution.case.case_file import parse_case
-from restitution.contact.patch.law import law_of_patches
-from restitution.runs import refinement
+from restitution.contact.bodies import Body, Pair
+from restitution.contact.cohesive.law import Cohesive
+from restitution.contact.contact import Contact, smooth
+from restitution.contact.patch.law import PatchAttraction, law_of_patches
+from restitution.numerics.grid import Grid
+from restitution.runs import refinement, two_scales
 from restitution.runs.depths import load_to
 from restitution.runs.error_budget import law_error
 from restitution.runs.refinement import with_chosen_grids
-from restitution.runs.two_scales import too_small_for_patches
+from restitution.runs.two_scales import patches_that_jump, solve_patches, too_small_for_patches
+from restitution.surfaces import generate_surface
 from tolerance import approx
 
 CASE = """
@@ -148,3 +153,21 @@ def test_changes_at_other_velocities_count_in_proportion_to_the_split():
     assert fast == approx(0.08 * math.sqrt(weight) / 4)
     assert slow == approx(0.08 * math.sqrt(1 - weight))
     assert law_error(change, none, work, np.ones(2))[1] == approx(4 * fast)
+
+
+def test_patches_that_lose_much_in_jumps_name_cells_that_need_none(monkeypatch):
+    grid, soft = Grid((64, 64), (0.7e-9, 0.7e-9)), (4e9, 0.3, 1500.0)
+    shape = {"kind": "self-affine", "hurst": 0.8, "shortest": 7e-9, "rolloff": 40e-9}
+    patch = generate_surface(grid, rms=0.15e-9, seed=1, **shape)
+    law = PatchAttraction((patch,), grid.size[0] / 2, Cohesive(0.08))
+    pair = Pair(Body(1e-6, *soft), Body(math.inf, *soft))
+    wide = Grid((8, 8), (grid.size[0] / 4, grid.size[0] / 4))
+    contact = Contact(pair, smooth(wide), adhesion=law)
+    monkeypatch.setattr(two_scales, "_LOST", 0.02)
+    assert not list(patches_that_jump(contact))  # not solved yet
+    solve_patches(contact)
+    (line,) = patches_that_jump(contact)
+    assert "the patches lose 3% of the work of adhesion in jumps" in line
+    assert 'grid.spacing = "0.7 nm" carries all waves' in line
+    monkeypatch.setattr(two_scales, "_LOST", 0.05)
+    assert not list(patches_that_jump(contact))

@@ -54,7 +54,13 @@ from restitution.runs.result_warnings import (
 from restitution.runs.run_in import require_run_in, run_in
 from restitution.runs.size_effect import left_out
 from restitution.runs.smooth import smooth_curve
-from restitution.runs.two_scales import patch_curve, solve_patches, told, too_small_for_patches
+from restitution.runs.two_scales import (
+    patch_curve,
+    patches_that_jump,
+    solve_patches,
+    told,
+    too_small_for_patches,
+)
 from restitution.surfaces import describe
 
 CONVENTIONS = {
@@ -301,6 +307,7 @@ def _result_warnings(case: Case, contact: Contact, out: ResultsFolder, run: _Run
     yield from too_coarse_for_adhesion(case, contact.grid, points, run.seconds)
     yield from band_warning(contact.surface, run.band_errors, case.grid.factor)
     yield from too_small_for_patches(case, contact, points)
+    yield from patches_that_jump(contact)
     if run.errors:
         yield from interrupted_errors(case, points, run.status)
     yield from imprecise(points, case)

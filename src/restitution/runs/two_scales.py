@@ -12,7 +12,7 @@ import numpy as np
 from restitution.case.case import Case
 from restitution.contact.checks.resolution import divisions
 from restitution.contact.contact import Contact
-from restitution.contact.patch.law import PatchLaw, law_of_patches
+from restitution.contact.patch.law import PatchAttraction, PatchLaw, law_of_patches
 from restitution.curve.point import Point
 from restitution.display import counted, duration, quantity
 from restitution.numerics.grid import Grid
@@ -32,6 +32,10 @@ REFINED = (
 # Errors of COR above this are told, with a grid on which they are smaller. They are proportional to
 # the longest wave of the patches, which should be at most this fraction of the contact radius.
 _WIDE, _LONGEST = 0.05, 0.5
+
+# Share of the work of adhesion that patches may lose in jumps: their law for unloading is that of
+# loading (docs/two-scales.md: off by more than its error where they lose 0.16).
+_LOST = 0.05
 
 
 def solve_patches(contact: Contact, progress: Say = ignore) -> None:
@@ -110,6 +114,20 @@ def too_small_for_patches(case: Case, contact: Contact, points: Sequence[Point])
         f"where the error of COR by the grid is up to {largest:.2g}; with {keys}, it would be "
         f"about {largest / times:.1g}"
     )
+
+
+def patches_that_jump(contact: Contact) -> Iterator[str]:
+    """Yield a warning if patches that attract each other lose energy in jumps."""
+    law = law_of_patches(contact)
+    if not isinstance(law, PatchAttraction):
+        return
+    if (lost := law.lost_in_jumps / law.work_of_adhesion) > _LOST:
+        spacing = quantity(law.patches[0].grid.spacing[0], "m")
+        yield (
+            f"the patches lose {lost:.0%} of the work of adhesion in jumps, "
+            "so pull-off force and sticking velocity may be off by more than their errors; "
+            f'grid.spacing = "{spacing}" carries all waves without patches'
+        )
 
 
 def _finer(case: Case, grid: Grid, times: int) -> str | None:

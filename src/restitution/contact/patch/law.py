@@ -192,6 +192,15 @@ class PatchAttraction(CohesiveLaw):
         """The loading of one of the patches."""
         return AttractionCurve.of(self._contact(patch), self._shape(patch))
 
+    @property
+    def lost_in_jumps(self) -> float:
+        """Largest work (J/m²) that a patch with jumps has lost, of those that are solved."""
+        curves = [self.curve(patch) for patch in self.patches if self._is_known(patch)]
+        return max((float(curve.lost.max()) for curve in curves if curve.jumps), default=0.0)
+
+    def _is_known(self, patch: Surface) -> bool:
+        return AttractionCurve.is_known(self._contact(patch), self._shape(patch))
+
     def _shape(self, patch: Surface) -> Shape:
         return shape_in(patch.grid, self.cell or patch.grid.size)
 
@@ -207,11 +216,7 @@ class PatchAttraction(CohesiveLaw):
         yield _waves(self.patches[0], state.contact.pair, state.plastic_work)
 
     def grid_finding(self, contact: Contact) -> Finding | None:
-        known = all(
-            AttractionCurve.is_known(self._contact(patch), self._shape(patch))
-            for patch in self.patches
-        )
-        if not known or self.resolves_range(contact):
+        if not all(map(self._is_known, self.patches)) or self.resolves_range(contact):
             return None
         return self._too_coarse(contact)
 
