@@ -10,8 +10,6 @@ were drawn after that.
 
 from __future__ import annotations
 
-import argparse
-import csv
 import math
 import tempfile
 import time
@@ -19,13 +17,13 @@ from pathlib import Path
 
 import numpy as np
 
+from evidence.two_scales.table import Table, options
 from restitution.case.case_file import parse_case
 from restitution.numerics.grid import Grid
 from restitution.results.writer import ResultsFolder
 from restitution.runs.run import run_case
 from restitution.surfaces import generate_surface
 
-TABLE = Path(__file__).with_suffix(".csv")
 FINER = 8
 FIRST = 700
 CASES = (*range(24), *range(500, 527))
@@ -50,6 +48,7 @@ COLUMNS = (
     "omit_error",
     "omit_grid_error",
 )
+TABLE = Table(__file__, COLUMNS)
 
 
 def draw(seed: int, scans: Path, folder: Path) -> tuple[str, str, float]:
@@ -173,7 +172,7 @@ def radius(point: object) -> float:
 def summary() -> None:
     for words, first, last in (("drawn before", 0, 500), ("drawn after", 500, 1000)):
         print(words, "the constants of the error were chosen:")
-        summary_of([row for row in rows_so_far() if first <= int(row["case"]) < last])
+        summary_of([row for row in TABLE.rows() if first <= int(row["case"]) < last])
 
 
 def summary_of(rows: list[dict[str, str]]) -> None:
@@ -203,32 +202,13 @@ def summary_of(rows: list[dict[str, str]]) -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--topographies", type=Path, default=Path("../shared/topographies"))
-    parser.add_argument("--summary", action="store_true")
-    given = parser.parse_args()
+    given = options(__doc__)
     if not given.summary:
-        done = {int(row["case"]) for row in rows_so_far()}
+        done = TABLE.cases()
         for number in CASES:
             if number not in done:
-                append(rows_of(number, given.topographies.resolve()))
+                TABLE.append(rows_of(number, given.topographies))
     summary()
-
-
-def rows_so_far() -> list[dict[str, str]]:
-    if not TABLE.exists():
-        return []
-    with open(TABLE, newline="") as file:
-        return list(csv.DictReader(file))
-
-
-def append(rows: list[dict[str, object]]) -> None:
-    new = not TABLE.exists()
-    with open(TABLE, "a", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-        if new:
-            writer.writeheader()
-        writer.writerows(rows)
 
 
 if __name__ == "__main__":

@@ -8,8 +8,6 @@ in runs/companions.py were chosen on them. Cases that are in the table are not s
 
 from __future__ import annotations
 
-import argparse
-import csv
 import tempfile
 from itertools import pairwise
 from pathlib import Path
@@ -17,10 +15,10 @@ from pathlib import Path
 import numpy as np
 
 from evidence.two_scales.dry import draw, run
+from evidence.two_scales.table import Table, options
 from restitution.case.case_file import parse_case
 from restitution.runs.error_budget import ErrorBudget
 
-TABLE = Path(__file__).with_suffix(".csv")
 FIRST, CASES = 1000, 76
 BINS = (0.0, 0.25, 0.4, 0.6, 1.2, 10.0)
 PARTS = ("change", "scatter", "separation", "growth")
@@ -36,6 +34,7 @@ COLUMNS = (
     "grid_error",
     "surface_scatter",
 )
+TABLE = Table(__file__, COLUMNS)
 
 
 def rows_of(number: int, scans: Path) -> list[dict[str, object]]:
@@ -87,7 +86,7 @@ def parts_of(budget: ErrorBudget) -> list[dict[str, object]]:
 
 
 def summary() -> None:
-    rows = rows_so_far()
+    rows = TABLE.rows()
     number = lambda name: np.array([float(row[name]) for row in rows])  # noqa: E731
     off = np.abs(number("patch") - number("direct"))
     error, ratio = number("grid_error"), number("wavelength_over_radius")
@@ -106,29 +105,14 @@ def summary() -> None:
             )
 
 
-def rows_so_far() -> list[dict[str, str]]:
-    if not TABLE.exists():
-        return []
-    with open(TABLE, newline="") as file:
-        return list(csv.DictReader(file))
-
-
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--topographies", type=Path, default=Path("../shared/topographies"))
-    parser.add_argument("--summary", action="store_true")
-    given = parser.parse_args()
-    done = {int(row["case"]) for row in rows_so_far()}
+    given = options(__doc__)
+    done = TABLE.cases()
     for number in range(0 if given.summary else CASES):
         if number in done:
             continue
-        rows = rows_of(number, given.topographies.resolve())
-        new = not TABLE.exists()
-        with open(TABLE, "a", newline="") as file:
-            writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-            if new:
-                writer.writeheader()
-            writer.writerows(rows)
+        rows = rows_of(number, given.topographies)
+        TABLE.append(rows)
         print(number, len(rows), flush=True)
     summary()
 

@@ -8,8 +8,6 @@ constants of the error were chosen. Cases that are in it are not solved again.
 
 from __future__ import annotations
 
-import argparse
-import csv
 import re
 import tempfile
 import time
@@ -18,13 +16,13 @@ from pathlib import Path
 import numpy as np
 
 from evidence.two_scales.dry import CASES, FIRST, draw
-from evidence.two_scales.dry import rows_so_far as dry_rows
+from evidence.two_scales.dry import TABLE as DRY
+from evidence.two_scales.table import Table, options
 from restitution.case.case_file import parse_case
 from restitution.errors import RestitutionError
 from restitution.results.writer import ResultsFolder
 from restitution.runs.run import run_case
 
-TABLE = Path(__file__).with_suffix(".csv")
 COLUMNS = (
     "case",
     "kind",
@@ -44,6 +42,7 @@ COLUMNS = (
     "chosen_total_error",
     "chosen_seconds",
 )
+TABLE = Table(__file__, COLUMNS)
 _NAMED = re.compile(r"with grid\.refine = (\d+) .* it would be about ([\d.]+)")
 
 
@@ -58,7 +57,7 @@ def run(text: str, refine: str, folder: Path) -> tuple[object, list[str], float]
 
 
 def row_of(number: int, scans: Path) -> dict[str, object] | None:
-    known = [row for row in dry_rows() if int(row["case"]) == number]
+    known = [row for row in DRY.rows() if int(row["case"]) == number]
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
         kind, text, _ = draw(FIRST + number, scans, folder)
@@ -97,7 +96,7 @@ def row_of(number: int, scans: Path) -> dict[str, object] | None:
 
 
 def summary() -> None:
-    rows = rows_so_far()
+    rows = TABLE.rows()
     named = [row for row in rows if row["named"]]
     ratio = [float(row["named_grid_error"]) / float(row["foretold"]) for row in named]
     off = [abs(float(row["named_patch"]) - float(row["direct"])) for row in named]
@@ -118,31 +117,16 @@ def summary() -> None:
     print(f"processor time of the chosen grids: {np.median(seconds):.1f} times, in the median")
 
 
-def rows_so_far() -> list[dict[str, str]]:
-    if not TABLE.exists():
-        return []
-    with open(TABLE, newline="") as file:
-        return list(csv.DictReader(file))
-
-
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--topographies", type=Path, default=Path("../shared/topographies"))
-    parser.add_argument("--summary", action="store_true")
-    given = parser.parse_args()
-    done = {int(row["case"]) for row in rows_so_far()}
-    solved = {int(row["case"]) for row in dry_rows()}
+    given = options(__doc__)
+    done = TABLE.cases()
+    solved = DRY.cases()
     for number in CASES if not given.summary else ():
         if number < 500 or number in done or number not in solved:
             continue
-        if (row := row_of(number, given.topographies.resolve())) is None:
+        if (row := row_of(number, given.topographies)) is None:
             continue
-        new = not TABLE.exists()
-        with open(TABLE, "a", newline="") as file:
-            writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-            if new:
-                writer.writeheader()
-            writer.writerow(row)
+        TABLE.append([row])
         print(*row.values(), flush=True)
     summary()
 

@@ -8,6 +8,7 @@ import pytest
 from restitution import ConstantBound, ExpandingCavity, SizedBound, run
 from restitution.case.case_file import parse_case
 from restitution.errors import CaseError
+from short_waves import SHORT_WAVES
 from tolerance import approx
 
 BODIES = """
@@ -135,15 +136,6 @@ def test_waves_below_the_grid_know_h_star(strength):
         case = tables(size_effect=size)
         case["interface"] |= strength
         case["interface"] = {key: v for key, v in case["interface"].items() if v is not None}
-        case["roughness"] = {
-            "kind": "self-affine",
-            "rms": "15 nm",
-            "hurst": 0.8,
-            "rolloff": "2 um",
-            "shortest": "0.4 um",
-            "seed": 1,
-            "below_grid": "patch",
-            "split": "0.8 um",
-        }
+        case["roughness"] = SHORT_WAVES
         e.append(float(run(case).curve.restitution[0]))
     assert e[0] > e[1] + 0.01

@@ -5,6 +5,7 @@ import re
 import pytest
 
 from restitution import run
+from short_waves import SHORT_WAVES
 from tolerance import approx
 
 CASE = {
@@ -55,16 +56,7 @@ def test_patches_of_short_waves_count_in_what_is_left_out():
     """Copper whose waves below the grid are in patches, without and with the key."""
     case = {
         **CASE,
-        "roughness": {
-            "kind": "self-affine",
-            "rms": "15 nm",
-            "hurst": 0.8,
-            "rolloff": "2 um",
-            "shortest": "0.4 um",
-            "seed": 1,
-            "below_grid": "patch",
-            "split": "0.8 um",
-        },
+        "roughness": SHORT_WAVES,
         "grid": {"nodes": 64, "spacing": "0.4 um"},
         "impact": {"velocity": "20 mm/s"},
     }
