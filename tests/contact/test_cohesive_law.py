@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from restitution.contact.bodies import Body, Pair
-from restitution.contact.cohesive.equilibrium import BoundedLaw
+from restitution.contact.cohesive.bounded_law import BoundedLaw
 from restitution.contact.cohesive.law import Cohesive
 from restitution.contact.contact import Contact, smooth
 from restitution.numerics.grid import Grid

@@ -7,7 +7,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
-from restitution.contact.cohesive.equilibrium import CohesiveState, law_of, rigid_start
+from restitution.contact.cohesive.bounded_law import law_of
+from restitution.contact.cohesive.equilibrium import CohesiveState, rigid_start
 from restitution.contact.cohesive.steps import ACCURACY, follow
 from restitution.contact.contact import Contact
 from restitution.contact.state import State

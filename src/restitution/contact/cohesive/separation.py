@@ -10,16 +10,17 @@ from typing import cast
 
 import numpy as np
 
+from restitution.contact.cohesive.bounded_law import law_of
 from restitution.contact.cohesive.equilibrium import (
     CohesiveState,
     is_unique,
-    law_of,
     solve_cohesive,
     with_interaction,
     with_losses_of,
 )
 from restitution.contact.cohesive.guide import Guide
-from restitution.contact.cohesive.steps import ACCURACY, follow, reference_energy
+from restitution.contact.cohesive.steps import ACCURACY, follow
+from restitution.contact.cohesive.trial import reference_energy
 from restitution.contact.models import Separation
 from restitution.contact.state import State
 from restitution.numerics.box import reframe, shape_of, union
@@ -146,11 +147,10 @@ def _halfway(end: CohesiveState, top: CohesiveState) -> float | None:
 
 def _on_parabola(a: CohesiveState, b: CohesiveState, c: CohesiveState, new: CohesiveState) -> bool:
     """Whether the force of `new` is that of the parabola through three states."""
-    x = np.array([state.indentation - b.indentation for state in (a, b, c)])
-    expected = np.polyval(
-        np.polyfit(x, [a.force, b.force, c.force], 2), new.indentation - b.indentation
-    )
-    return bool(abs(new.force - expected) <= _SMOOTH * abs(expected))
+    slope, second = _parabola(a, b, c)
+    x = new.indentation - b.indentation
+    expected = b.force + x * (slope + second * x)
+    return abs(new.force - expected) <= _SMOOTH * abs(expected)
 
 
 def _peak(a: CohesiveState | None, b: CohesiveState, c: CohesiveState) -> Iterator[CohesiveState]:
@@ -182,12 +182,17 @@ def _peak(a: CohesiveState | None, b: CohesiveState, c: CohesiveState) -> Iterat
 
 def _vertex(a: CohesiveState, b: CohesiveState, c: CohesiveState) -> tuple[float, float]:
     """Indentation and force at the vertex of the parabola through three states."""
+    slope, second = _parabola(a, b, c)
+    way = -0.5 * slope / second
+    return b.indentation + way, b.force + 0.5 * slope * way
+
+
+def _parabola(a: CohesiveState, b: CohesiveState, c: CohesiveState) -> tuple[float, float]:
+    """Coefficients of x and x² of the force through three states, at the distance x from `b`."""
     left, right = b.indentation - a.indentation, c.indentation - b.indentation
     slopes = (b.force - a.force) / left, (c.force - b.force) / right
     second = (slopes[1] - slopes[0]) / (left + right)
-    slope = slopes[0] + second * left
-    way = -0.5 * slope / second
-    return b.indentation + way, b.force + 0.5 * slope * way
+    return slopes[0] + second * left, second
 
 
 def _between(a: CohesiveState, b: CohesiveState, at: float) -> CohesiveState:

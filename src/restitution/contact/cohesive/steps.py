@@ -9,22 +9,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from restitution.contact.checks.edge import require_inside_grid
+from restitution.contact.cohesive.ahead import LEAST_STEP, WayAhead, is_long
+from restitution.contact.cohesive.bounded_law import law_of
 from restitution.contact.cohesive.equilibrium import (
     CohesiveState,
     FarEquilibriumError,
     interacting_box,
-    law_of,
     on_box,
     solve_cohesive,
     with_interaction,
 )
 from restitution.contact.cohesive.guide import Guide
+from restitution.contact.cohesive.trial import TrialStep, earlier_state, reference_energy
 from restitution.contact.state import Array
 from restitution.errors import NotConvergedError
 from restitution.numerics.box import reframe, shape_of, union
@@ -32,11 +34,6 @@ from restitution.numerics.box import reframe, shape_of, union
 # In a step without a jump, the work of the force must equal the change of energy. This is the
 # largest accepted difference, as a fraction of the reference energy `reference_energy`.
 ACCURACY = 5e-4
-# The work of the force in a step is computed twice: by the trapezium rule, and from the quartic
-# through energies and forces. A step counts as free of jumps only if the two works are nearly
-# equal. Their difference must not exceed _CORRECTION times the error that is allowed for the step.
-# If the difference is larger, the force may have jumped, and the quartic may be right by chance.
-_CORRECTION = 10.0
 # Tolerances of the solves of loading between the given depths, whose errors can become plastic
 # displacement, and of unloading under pressure.
 _BETWEEN, _BACK = 1e-5, 1e-4
@@ -49,22 +46,8 @@ _FIRST_STEP = 0.25  # length of the first step, in units of the equilibrium sepa
 # is below _NEAR z₀. Under tension, the error of a step is this share of that of others.
 # At least, it is the share _SLIGHT of that where unloading began.
 _UNDER_TENSION, _NEAR, _TENSE, _SLIGHT = 0.4, 2.0, 0.4, 0.02
-# Largest relative error of the largest tension where it ends in a jump, but no step is made shorter
-# than _AT_FOLD z₀ for it.
-_AT_JUMP, _AT_FOLD = 3e-3, 0.01
-# Longest step with a jump after another jump, in units of z₀. The energy lost in a longer one may
-# be the error of the trapezium rule.
-_ALONE = 0.08
 _GROWTH = 3.0  # largest ratio of the lengths of two steps
 _NEARLY = 0.8  # a step of this share of the way that is left goes all the way
-# A solve that may pass a jump ends where a node moves by this distance, in units of z₀, from its
-# start. In lactose with Rq 0.15 nm the largest change was below 0.35 z₀ on the branch, and above
-# 1.2 z₀ after a jump.
-_REACH = 0.5
-_MOST_AHEAD = 4  # states that are kept
-# Shortest step, in units of z₀. If even this step fails, the path cannot be followed, and an error
-# is raised.
-_LEAST_STEP = 1e-5
 _MOST_STEPS = 5000
 
 # When the box (the part of the grid that is solved) must grow, it is made large enough for about
@@ -72,91 +55,6 @@ _MOST_STEPS = 5000
 _WIDER = 1.5
 # In unloading it shrinks where this share of its nodes suffices.
 _NARROWER = 0.4
-
-_Limit = Callable[[CohesiveState, CohesiveState], float]  # of the error (J) of a step
-
-
-@dataclass(frozen=True)
-class _Step:
-    """A trial step: the state at its end, the work of the force by two rules, and energies (J).
-
-    `change` is that of the potential energy plus the plastic work. `uncertainty` is the error if
-    the force has jumped in the step.
-    """
-
-    state: CohesiveState
-    by_trapezium: float
-    by_quartic: float
-    change: float
-    uncertainty: float
-
-    @classmethod
-    def of(cls, state: CohesiveState, new: CohesiveState) -> _Step:
-        previous = _earlier(state, new.indentation)
-        way, force, before = new.indentation - state.indentation, new.force, state.force
-        trapezium = 0.5 * (force + before) * way
-        change = new.potential_energy - state.potential_energy
-        return cls(
-            new,
-            trapezium,
-            trapezium if previous is None else _quartic(previous, state, new),
-            change + new.plastic_work - state.plastic_work,
-            0.5 * abs(force - before) * abs(way),
-        )
-
-    @property
-    def off(self) -> float:
-        """Work of the force (J) minus the change of energy."""
-        return self.by_quartic - self.change
-
-    def is_smooth(self, allowed: float) -> bool:
-        correction = abs(self.by_quartic - self.by_trapezium)
-        return abs(self.off) <= allowed and correction <= _CORRECTION * allowed
-
-
-class _Ahead:
-    """What solves that were not accepted have shown of the way ahead.
-
-    `left` is the nearest indentation (m) at which a solve has left the branch; None if unknown.
-    """
-
-    def __init__(self, sign: float) -> None:
-        self.left: float | None = None
-        self._sign = sign
-        self._states: list[CohesiveState] = []  # the nearest is the last
-        self._allowed = 0.0
-        self._compared: CohesiveState | None = None
-
-    def reject(self, new: CohesiveState, allowed: float) -> None:
-        self.left, self._allowed = new.indentation, allowed
-        if self._states and self._states[-1].indentation == new.indentation:
-            self._states.pop()
-        self._states = [*self._states[1 - _MOST_AHEAD :], new]
-
-    def pass_to(self, state: CohesiveState, smooth: bool) -> None:
-        at = self._sign * state.indentation
-        while self._states and self._sign * self._states[-1].indentation <= at:
-            self._states.pop()
-        if not smooth or (self.left is not None and self._sign * self.left <= at):
-            self.left = None
-
-    def joined(self, state: CohesiveState, limit: _Limit) -> CohesiveState | None:
-        """The nearest known state, if it is on the branch of `state`, as far as energies show."""
-        if not self._states or self._compared is state:
-            return None
-        self._compared, nearest = state, self._states[-1]
-        return nearest if _Step.of(state, nearest).is_smooth(limit(state, nearest)) else None
-
-    def next(self, state: CohesiveState, tension: float) -> tuple[float, float]:
-        """Where the next solve is to end, and how far it may go from its start (m)."""
-        assert self.left is not None
-        z0 = law_of(state.contact).equilibrium_separation
-        width = abs(self.left - state.indentation)
-        jump = abs(self._states[-1].force - state.force)
-        near = 0.5 * jump * width <= self._allowed and not _is_long(state, self.left, tension)
-        if near or width <= 2 * _LEAST_STEP * z0:
-            return self.left, math.inf
-        return 0.5 * (state.indentation + self.left), _REACH * z0
 
 
 def follow(
@@ -183,14 +81,14 @@ def follow(
         shortest = max(shortest, (0.02 if sign > 0 else 0.08) * abs(state.indentation))
     length = shortest
     # The last step before a prescribed depth is often short, so the one before counts, too.
-    later, earlier = state, _earlier(state, target)
+    later, earlier = state, earlier_state(state, target)
     for _ in range(2):
         if earlier is not None:
             length = max(length, abs(later.indentation - earlier.indentation))
-            later, earlier = earlier, _earlier(earlier, target)
+            later, earlier = earlier, earlier_state(earlier, target)
     rejected = 0  # convolutions of steps that were not accepted
     tension = 0.0
-    ahead = _Ahead(sign)
+    ahead = WayAhead(sign)
     require_inside_grid(state)
     for _ in range(_MOST_STEPS):
         target = target if goal is None else goal(state)
@@ -222,7 +120,7 @@ def follow(
             ahead.left = at
             continue
         except NotConvergedError:
-            if length <= 8 * _LEAST_STEP * z0:
+            if length <= 8 * LEAST_STEP * z0:
                 raise
             length /= 4
             ahead.left = None
@@ -230,8 +128,8 @@ def follow(
         new = step.state
         allowed = limit(state, new)
         smooth = step.is_smooth(allowed)
-        coarse = step.uncertainty > allowed or _is_long(state, at, tension)
-        if not smooth and coarse and length > _LEAST_STEP * z0:
+        coarse = step.uncertainty > allowed or is_long(state, at, tension)
+        if not smooth and coarse and length > LEAST_STEP * z0:
             ahead.reject(new, allowed)
             rejected += new.convolutions
             continue
@@ -253,7 +151,8 @@ def follow(
 
 def _next(state: CohesiveState, target: float, length: float) -> float:
     """Indentation (m) at the end of a step of about `length` (m) towards `target`."""
-    law, z0 = law_of(state.contact), law_of(state.contact).equilibrium_separation
+    law = law_of(state.contact)
+    z0 = law.equilibrium_separation
     left = abs(target - state.indentation)
     if state.force < 0 and state.smallest_gap < _NEAR * z0:
         # Do not step over the largest tension.
@@ -296,23 +195,6 @@ def _work_ahead(state: CohesiveState, new: CohesiveState, target: float) -> floa
     return left * (new.force + 0.5 * max(stiffness, 0.0) * left)
 
 
-def _is_long(state: CohesiveState, at: float, tension: float) -> bool:
-    """Whether a step with a jump to the indentation `at` is too long, wherever it jumps."""
-    length = abs(at - state.indentation)
-    alone = length > _ALONE * law_of(state.contact).equilibrium_separation
-    return (alone and _earlier(state, at) is None) or _misses_tension(state, length, tension)
-
-
-def _misses_tension(state: CohesiveState, length: float, tension: float) -> bool:
-    """Whether the largest tension may be larger than `tension`, that at `state`, before a jump."""
-    before = state.before
-    shortest = _AT_FOLD * law_of(state.contact).equilibrium_separation
-    if before is None or state.force >= 0 or -state.force < tension or length < shortest:
-        return False
-    slope = (state.force - before.force) / (state.indentation - before.indentation)
-    return slope * length > _AT_JUMP * tension
-
-
 def _to_tension(state: CohesiveState, length: float) -> float:
     """Distance (m) to where the force is expected to vanish, at least a quarter of `length`."""
     assert state.before is not None
@@ -320,10 +202,10 @@ def _to_tension(state: CohesiveState, length: float) -> float:
     return max(state.force / slope, 0.25 * length) if slope > 0 else length
 
 
-def _accounted(state: CohesiveState, step: _Step, smooth: bool) -> CohesiveState:
+def _accounted(state: CohesiveState, step: TrialStep, smooth: bool) -> CohesiveState:
     lost = 0.0 if smooth else max(step.by_trapezium - step.change, 0.0)
     error = 0.0 if smooth else min(step.uncertainty, max(lost, abs(step.change)))
-    unaccounted = state.unaccounted + (step.by_quartic - step.change if smooth else 0.0)
+    unaccounted = state.unaccounted + (step.off if smooth else 0.0)
     return with_interaction(
         replace(
             step.state,
@@ -336,21 +218,13 @@ def _accounted(state: CohesiveState, step: _Step, smooth: bool) -> CohesiveState
     )
 
 
-def _earlier(state: CohesiveState, at: float) -> CohesiveState | None:
-    """The state before `state` on the way to the indentation `at`."""
-    before = state.before
-    if before is None or (at - state.indentation) * (state.indentation - before.indentation) <= 0:
-        return None
-    return before
-
-
 def _try(
     state: CohesiveState,
     at: float,
     residual: float,
     guide: Guide | CohesiveState | None,
     reach: float = math.inf,
-) -> _Step:
+) -> TrialStep:
     contact, box = state.contact, state.box
     limit, convolutions = contact.plasticity.bound_after(state, at, residual)
     new = solve_cohesive(
@@ -370,7 +244,7 @@ def _try(
         work_error=state.work_error + plastic_error,
         convolutions=new.convolutions + convolutions,
     )
-    return _Step.of(state, new)
+    return TrialStep.of(state, new)
 
 
 def _start(
@@ -388,7 +262,7 @@ def _start(
     change = None if guide is None else guide.change(state.indentation, at, box)
     if change is not None:
         return p + change, None
-    previous = _earlier(state, at)
+    previous = earlier_state(state, at)
     if previous is None:
         return p, state.box_displacement
     ratio = (at - state.indentation) / (state.indentation - previous.indentation)
@@ -399,29 +273,6 @@ def _start(
     inside = reframe(np.ones(shape_of(previous.box), dtype=bool), previous.box, box)
     change = p - reframe(previous.box_pressure, previous.box, box)
     return p + ratio * np.where(inside, change, 0.0), None
-
-
-def _quartic(previous: CohesiveState, state: CohesiveState, new: CohesiveState) -> float:
-    """Work in the step from `state` to `new` by the quartic through energies and forces.
-
-    The derivative of the energy is the force in all three states; the energy of `new` is not used.
-    """
-    way = new.indentation - state.indentation
-    g = (previous.indentation - state.indentation) / way
-    energy = previous.potential_energy + previous.plastic_work
-    energy -= state.potential_energy + state.plastic_work
-    first = state.force * way
-    c = np.linalg.solve(
-        [[g**2, g**3, g**4], [2 * g, 3 * g**2, 4 * g**3], [2.0, 3.0, 4.0]],
-        [energy - first * g, previous.force * way - first, new.force * way - first],
-    )
-    return first + float(c.sum())
-
-
-def reference_energy(state: CohesiveState, *, loading: bool) -> float:
-    """Reference energy (J). The allowed error of a step is a fraction of this energy."""
-    scale = state.stored_energy + abs(state.interaction_energy)
-    return scale + state.plastic_work if loading else scale
 
 
 def _on_fitting_box(

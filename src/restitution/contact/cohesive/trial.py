@@ -1,0 +1,84 @@
+"""Steps along a branch of equilibria: the work of the force beside the change of the energies."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from restitution.contact.cohesive.equilibrium import CohesiveState
+
+# The work of the force in a step is computed twice: by the trapezium rule, and from the quartic
+# through energies and forces. A step counts as free of jumps only if the two works are nearly
+# equal. Their difference must not exceed _CORRECTION times the error that is allowed for the step.
+# If the difference is larger, the force may have jumped, and the quartic may be right by chance.
+_CORRECTION = 10.0
+
+
+@dataclass(frozen=True)
+class TrialStep:
+    """A trial step: the state at its end, the work of the force by two rules, and energies (J).
+
+    `change` is that of the potential energy plus the plastic work. `uncertainty` is the error if
+    the force has jumped in the step.
+    """
+
+    state: CohesiveState
+    by_trapezium: float
+    by_quartic: float
+    change: float
+    uncertainty: float
+
+    @classmethod
+    def of(cls, state: CohesiveState, new: CohesiveState) -> TrialStep:
+        previous = earlier_state(state, new.indentation)
+        way, force, before = new.indentation - state.indentation, new.force, state.force
+        trapezium = 0.5 * (force + before) * way
+        change = new.potential_energy - state.potential_energy
+        return cls(
+            new,
+            trapezium,
+            trapezium if previous is None else _quartic(previous, state, new),
+            change + new.plastic_work - state.plastic_work,
+            0.5 * abs(force - before) * abs(way),
+        )
+
+    @property
+    def off(self) -> float:
+        """Work of the force (J) minus the change of energy."""
+        return self.by_quartic - self.change
+
+    def is_smooth(self, allowed: float) -> bool:
+        correction = abs(self.by_quartic - self.by_trapezium)
+        return abs(self.off) <= allowed and correction <= _CORRECTION * allowed
+
+
+def earlier_state(state: CohesiveState, at: float) -> CohesiveState | None:
+    """The state before `state` on the way to the indentation `at`."""
+    before = state.before
+    if before is None or (at - state.indentation) * (state.indentation - before.indentation) <= 0:
+        return None
+    return before
+
+
+def _quartic(previous: CohesiveState, state: CohesiveState, new: CohesiveState) -> float:
+    """Work in the step from `state` to `new` by the quartic through energies and forces.
+
+    The derivative of the energy is the force in all three states; the energy of `new` is not used.
+    """
+    way = new.indentation - state.indentation
+    g = (previous.indentation - state.indentation) / way
+    energy = previous.potential_energy + previous.plastic_work
+    energy -= state.potential_energy + state.plastic_work
+    first = state.force * way
+    c = np.linalg.solve(
+        [[g**2, g**3, g**4], [2 * g, 3 * g**2, 4 * g**3], [2.0, 3.0, 4.0]],
+        [energy - first * g, previous.force * way - first, new.force * way - first],
+    )
+    return first + float(c.sum())
+
+
+def reference_energy(state: CohesiveState, *, loading: bool) -> float:
+    """Reference energy (J). The allowed error of a step is a fraction of this energy."""
+    scale = state.stored_energy + abs(state.interaction_energy)
+    return scale + state.plastic_work if loading else scale
