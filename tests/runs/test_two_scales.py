@@ -48,6 +48,27 @@ spacing = "0.25 um"
 [impact]
 velocity = "{velocity}"
 """
+ROUGH = """
+[first]
+radius = "1 um"
+youngs_modulus = "4 GPa"
+poissons_ratio = 0.3
+[interface]
+work_of_adhesion = "0.08 J/m^2"
+yield_pressure = "elastic"
+[roughness]
+kind = "self-affine"
+rms = "0.15 nm"
+hurst = 0.8
+rolloff = "40 nm"
+shortest = "7 nm"
+seed = 1
+[grid]
+nodes = 8
+spacing = "11.2 nm"
+[indentation]
+values = ["0.2 nm"]
+"""
 USUAL = {
     "interface": 'yield_pressure = "3 GPa"',
     "below": "patch",
@@ -163,11 +184,15 @@ def test_patches_that_lose_much_in_jumps_name_cells_that_need_none(monkeypatch):
     pair = Pair(Body(1e-6, *soft), Body(math.inf, *soft))
     wide = Grid((8, 8), (grid.size[0] / 4, grid.size[0] / 4))
     contact = Contact(pair, smooth(wide), adhesion=law)
+    given = parse_case(ROUGH)
     monkeypatch.setattr(two_scales, "_LOST", 0.02)
-    assert not list(patches_that_jump(contact))  # not solved yet
+    assert not list(patches_that_jump(given, contact))  # not solved yet
     solve_patches(contact)
-    (line,) = patches_that_jump(contact)
+    (line,) = patches_that_jump(given, contact)
     assert "the patches lose 3% of the work of adhesion in jumps" in line
-    assert 'grid.spacing = "0.7 nm" carries all waves' in line
+    assert 'use grid.nodes = [128, 128] and grid.spacing = "0.7 nm", without patches' in line
+    monkeypatch.setattr(two_scales, "MOST_NODES", 2**13)
+    (line,) = patches_that_jump(given, contact)
+    assert "leave out short waves (roughness.shortest), without patches" in line
     monkeypatch.setattr(two_scales, "_LOST", 0.05)
-    assert not list(patches_that_jump(contact))
+    assert not list(patches_that_jump(given, contact))

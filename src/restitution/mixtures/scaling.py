@@ -104,7 +104,7 @@ class FamilyLaws:
             return 1.0
         squares = np.array([law.yield_pressure or math.inf for law in self.laws]) ** 2
         square = np.interp(-1 / pair.radius, -1 / self.radii, squares)
-        return math.sqrt(square / than.yield_pressure**2)
+        return math.sqrt(square) / than.yield_pressure
 
     def _points(self, pair: ParticlePair) -> tuple[LawPoint, ...]:
         velocities, curves = self.family.mixture.velocities, self._curves(pair)

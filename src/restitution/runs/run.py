@@ -307,7 +307,7 @@ def _result_warnings(case: Case, contact: Contact, out: ResultsFolder, run: _Run
     yield from too_coarse_for_adhesion(case, contact.grid, points, run.seconds)
     yield from band_warning(contact.surface, run.band_errors, case.grid.factor)
     yield from too_small_for_patches(case, contact, points)
-    yield from patches_that_jump(contact)
+    yield from patches_that_jump(case, contact)
     if run.errors:
         yield from interrupted_errors(case, points, run.status)
     yield from imprecise(points, case)

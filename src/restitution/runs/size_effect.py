@@ -59,6 +59,6 @@ def yielding_depth(state: State) -> float:
     if not given.size:
         return math.inf
     order = np.argsort(inverse)
-    volume = np.cumsum(given[order])
-    median = inverse[order][np.searchsorted(volume, 0.5 * volume[-1])]
+    work = np.cumsum(given[order])
+    median = inverse[order][np.searchsorted(work, 0.5 * work[-1])]
     return float(1 / median) if median > 0 else math.inf

@@ -116,33 +116,40 @@ def too_small_for_patches(case: Case, contact: Contact, points: Sequence[Point])
     )
 
 
-def patches_that_jump(contact: Contact) -> Iterator[str]:
+def patches_that_jump(case: Case, contact: Contact) -> Iterator[str]:
     """Yield a warning if patches that attract each other lose energy in jumps."""
-    law = law_of_patches(contact)
+    law, grid = law_of_patches(contact), case.grid.grid()
     if not isinstance(law, PatchAttraction):
         return
-    if (lost := law.lost_in_jumps / law.work_of_adhesion) > _LOST:
-        spacing = quantity(law.patches[0].grid.spacing[0], "m")
-        yield (
-            f"the patches lose {lost:.0%} of the work of adhesion in jumps, "
-            "so pull-off force and sticking velocity may be off by more than their errors; "
-            f'grid.spacing = "{spacing}" carries all waves without patches'
-        )
+    if (lost := law.lost_in_jumps / law.work_of_adhesion) <= _LOST:
+        return
+    times = divisions(max(contact.grid.spacing), law.patches[0].grid.spacing[0])
+    keys = None if grid is None else _cells(case, grid, times)
+    remedy = "leave out short waves (roughness.shortest)" if keys is None else f"use {keys}"
+    yield (
+        f"the patches lose {lost:.0%} of the work of adhesion in jumps, so pull-off force and "
+        f"sticking velocity may be off by more than their errors; {remedy}, without patches"
+    )
 
 
 def _finer(case: Case, grid: Grid, times: int) -> str | None:
+    """Keys with which patches have shorter waves; None if they take too many nodes."""
+    keys = _cells(case, grid, times)
+    split = keys is not None and any(part.split for part in case.roughness)
+    return "a shorter roughness.split" if split else keys
+
+
+def _cells(case: Case, grid: Grid, times: int) -> str | None:
     """Keys of a grid with cells smaller by the factor `times`; None if it has too many nodes."""
     factor = times * case.grid.factor
     nx, ny = divided(grid, factor).nodes
-    if nx * ny > MOST_NODES or factor > FACTORS[-1]:
+    if nx * ny > MOST_NODES:
         return None
-    if any(part.split for part in case.roughness):
-        return "a shorter roughness.split"
     if any(part.needs_patches(grid) for part in case.roughness):
         finer = divided(grid, times)
         (nx, ny), spacing = finer.nodes, quantity(min(finer.spacing), "m")
         return f'grid.nodes = [{nx}, {ny}] and grid.spacing = "{spacing}"'
-    return f"grid.refine = {factor} ({nx} x {ny} nodes)"
+    return None if factor > FACTORS[-1] else f"grid.refine = {factor} ({nx} x {ny} nodes)"
 
 
 def _radius(point: Point) -> float:

@@ -11,7 +11,8 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.contact.cohesive.equilibrium import CohesiveState, law_of
+from restitution.contact.cohesive.bounded_law import law_of
+from restitution.contact.cohesive.equilibrium import CohesiveState
 from restitution.contact.cohesive.loading import load_cohesive
 from restitution.contact.cohesive.steps import follow
 from restitution.contact.contact import Contact
@@ -38,8 +39,8 @@ class AttractionCurve:
 
     `gap` (m) is the distance of the mean planes before deformation, `pressure` (Pa) the nominal
     pressure (tension is negative), `work` that of loading (J/m², 0 at infinity), `lost` the work
-    per area that yielding and jumps have dissipated (J/m²), and `jumps` their number. `blocks` has
-    the mean pressure (Pa) of each block of the patch, with one row for each gap.
+    per area that yielding and jumps have dissipated (J/m²), and `jumped` that of jumps alone.
+    `blocks` has the mean pressure (Pa) of each block of the patch, with one row for each gap.
     """
 
     contact: Contact
@@ -47,8 +48,8 @@ class AttractionCurve:
     pressure: Array
     work: Array
     lost: Array
+    jumped: Array
     blocks: Array
-    jumps: int
 
     @classmethod
     def of(cls, contact: Contact, shape: Shape) -> AttractionCurve:
@@ -57,8 +58,7 @@ class AttractionCurve:
         `shape` is the number of blocks along each axis.
         """
         models = _models(contact, shape)
-        columns = dict(kept(contact.surface, models, lambda: _columns(contact, shape)))
-        return cls(contact, jumps=int(columns.pop("jumps")[0]), **columns)
+        return cls(contact, **kept(contact.surface, models, lambda: _columns(contact, shape)))
 
     @staticmethod
     def is_known(contact: Contact, shape: Shape) -> bool:
@@ -92,11 +92,10 @@ def _models(contact: Contact, shape: Shape) -> object:
 
 @dataclass(frozen=True, eq=False)
 class _Loading:
-    """States of a loading: rows of gap, pressure, work and loss, and pressures of all nodes."""
+    """States of a loading: rows of the first five columns, and pressures of all nodes."""
 
     rows: Array
     pressures: NDArray[np.float32]
-    jumps: int
 
     @property
     def nbytes(self) -> int:
@@ -109,14 +108,14 @@ class _Loading:
             return cast(_Loading, known)
         area, z0 = math.prod(contact.grid.size), law_of(contact).equilibrium_separation
         touch = float(contact.gap.mean()) + z0
-        rows, pressures, jumps = [], [], 0
+        rows, pressures = [], []
         for state in _loading(contact):
             lost = state.plastic_work + state.adhesive_loss
             work = state.potential_energy + lost
-            rows.append((touch - state.indentation, state.force / area, work / area, lost / area))
+            energies = (state.force, work, lost, state.adhesive_loss)
+            rows.append((touch - state.indentation, *(value / area for value in energies)))
             pressures.append(state.box_pressure.astype(np.float32))
-            jumps = state.jumps
-        loading = cls(np.array(rows), np.array(pressures), jumps)
+        loading = cls(np.array(rows), np.array(pressures))
         _recent.put(contact, loading)
         return loading
 
@@ -128,9 +127,10 @@ _recent = OperatorCache(max_bytes=2**27, max_items=16)
 
 def _columns(contact: Contact, shape: Shape) -> dict[str, Array]:
     loading = _Loading.of(contact)
-    columns = dict(zip(("gap", "pressure", "work", "lost"), loading.rows.T, strict=True))
+    names = ("gap", "pressure", "work", "lost", "jumped")
+    columns = dict(zip(names, loading.rows.T, strict=True))
     blocks = [block_means(pressure.astype(float), shape) for pressure in loading.pressures]
-    return columns | {"blocks": np.array(blocks), "jumps": np.array([float(loading.jumps)])}
+    return columns | {"blocks": np.array(blocks)}
 
 
 def _loading(contact: Contact) -> Iterator[CohesiveState]:

@@ -194,9 +194,9 @@ class PatchAttraction(CohesiveLaw):
 
     @property
     def lost_in_jumps(self) -> float:
-        """Largest work (J/m²) that a patch with jumps has lost, of those that are solved."""
-        curves = [self.curve(patch) for patch in self.patches if self._is_known(patch)]
-        return max((float(curve.lost.max()) for curve in curves if curve.jumps), default=0.0)
+        """Largest work (J/m²) that a patch has lost in jumps, of those that are solved."""
+        known = filter(self._is_known, self.patches)
+        return max((float(self.curve(patch).jumped.max()) for patch in known), default=0.0)
 
     def _is_known(self, patch: Surface) -> bool:
         return AttractionCurve.is_known(self._contact(patch), self._shape(patch))

@@ -16,7 +16,7 @@ from restitution.surfaces import Surface
 
 Columns = Mapping[str, Array]
 
-_FORMAT = 4  # number of the form of the columns
+_FORMAT = 5  # number of the form of the columns, and of the solver that they are from
 _FILES = StoredArrays("patches", most=2**24)  # thousands of patches
 _IN_MEMORY = 256
 _known: dict[str, Columns] = {}
