@@ -31,7 +31,7 @@ NodePotential = Callable[[Array], tuple[Array, Array, Array]]
 # Function of the unknowns u, p = K⁻¹u, φ′ and φ″ that returns the φ″ of a Newton step.
 Secant = Callable[[Array, Array, Array, Array], Array]
 
-MOST_STEPS = 300  # Newton steps after which the solve counts as not converged
+MOST_STEPS = 2000  # Newton steps after which the solve counts as not converged; jumps take many
 _MOST_ITERATIONS = 500  # limit on the conjugate-gradient iterations of one Newton step
 _FORCING = 0.1  # largest relative residual of the linear system of a Newton step
 
