@@ -148,6 +148,15 @@ def test_a_contact_without_jumps_unloads_through_the_states_of_loading(limit):
         assert found[2][-1] == approx(end.convolutions, rel=0.3)
 
 
+def test_an_elastic_contact_without_jumps_solves_its_unloading_once():
+    contact = rough_silica(70e9)
+    shared, alone = (unloaded(contact, DEPTHS, share=share) for share in (True, False))
+    assert shared[2][0] == alone[2][0] > 0
+    assert not shared[2][1:].any()
+    assert shared[1] == approx(np.full(3, shared[1][0]), rel=1e-12)
+    assert shared[0] == approx(alone[0], rel=1e-6)
+
+
 def test_a_contact_that_jumped_joins_the_unloading_from_a_shallower_depth():
     contact = sphere(1.0, 3.0)
     assert solve(contact, Z0).jumps > 0

@@ -3,14 +3,17 @@
 import numpy as np
 import pytest
 from hypothesis import given, settings
+from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from compiled_loops import both, seeds, shapes
 from restitution.numerics.expressions import (
     add_curvature,
     advance,
+    continued_lennard_jones,
     largest_ratio,
     lennard_jones,
+    lennard_jones_chords,
     redirect,
 )
 from restitution.numerics.node_tables import tabulated_potential
@@ -48,6 +51,30 @@ def test_the_lennard_jones_law_is_that_of_the_expression(shape, seed):
     (_, expected), (_, compiled) = both(lennard_jones, gap, 0.05, 3e-10, *empty)
     for one, other in zip(expected[3:], compiled[3:], strict=True):
         assert_allclose(other, one, rtol=1e-12, atol=1e-14 * np.abs(one).max())
+
+
+@settings(deadline=None, max_examples=25)
+@given(shapes, seeds, st.booleans())
+def test_the_bounded_law_and_its_chords_are_those_of_the_expressions(shape, seed, yields):
+    rng, law = np.random.default_rng(seed), (0.05, 3e-10)
+    base, u = 3e-10 * rng.uniform(0.5, 3, shape), 3e-11 * rng.uniform(-1, 1, shape)
+    p = 10 ** rng.uniform(6, 11, shape) * rng.choice([-1, 1], shape)
+    row = np.broadcast_to(3e-10 * rng.uniform(0.6, 0.9, shape[1]), shape)  # one for all rows
+    bound = rng.uniform(1e9, 1e10, shape)
+    stiff = np.zeros(shape) if yields else rng.uniform(1e18, 1e20, shape)
+    empty = [np.empty(shape) for _ in range(4)]
+    (_, expected), (_, compiled) = both(
+        continued_lennard_jones, base, u, (row, bound, stiff), law, *empty[:3]
+    )
+    for one, other in zip(expected[4:], compiled[4:], strict=True):
+        assert_allclose(other, one, rtol=1e-12, atol=1e-14 * np.abs(one).max())
+    known = p, *expected[5:]
+    soft = np.zeros(shape) if yields else 1 / stiff
+    for least_way in (1e-13, 3e-11):
+        arguments = base, u, known, (bound, soft), law, least_way, empty[3]
+        (_, expected), (_, compiled) = both(lennard_jones_chords, *arguments)
+        assert_allclose(compiled[-1], expected[-1], rtol=1e-6)
+        assert (expected[-1] != known[2]).any() or p.size < 40
 
 
 @settings(deadline=None, max_examples=25)

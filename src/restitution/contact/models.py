@@ -9,6 +9,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -190,6 +191,12 @@ class Separation:
     steps: int
 
 
+@lru_cache
+def adhesive_length(pair: Pair, work_of_adhesion: float) -> float:
+    """(w²R*/E*²)^⅓ (m)."""
+    return float(JKR(pair.radius, pair.contact_modulus, work_of_adhesion).adhesive_length)
+
+
 class Adhesion(ABC):
     """How surfaces attract each other, and the solves, paths, checks and errors that follow.
 
@@ -226,7 +233,7 @@ class Adhesion(ABC):
         """Length scale of adhesion (w²R*/E*²)^⅓ (m); 0 between flat bodies."""
         if pair.flat:
             return 0.0
-        return float(JKR(pair.radius, pair.contact_modulus, self.work_of_adhesion).adhesive_length)
+        return adhesive_length(pair, self.work_of_adhesion)
 
     def residual_length(self, pair: Pair, indentation: float) -> float:
         """Length by which the residuals of a solve at `indentation` (m) are divided (m)."""

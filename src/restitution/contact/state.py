@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -91,7 +92,7 @@ class State:
         """
         return reframe(self.box_pressure, self.box, box)
 
-    @property
+    @cached_property
     def force(self) -> float:
         """Normal force (N), the sum of the pressure over all nodes times the cell area."""
         return float(self.box_pressure.sum()) * self.contact.grid.cell_area

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 from restitution.numerics.kernels import use_loop
 
 Array = NDArray[Any]  # double or single precision
+Triple = tuple[Array, Array, Array]
 
 
 @use_loop
@@ -68,6 +70,64 @@ def lennard_jones(
     energy[...] = (-w / 3) * x2 * (4 - x6)
     slope[...] = (8 * w / (3 * z0)) * (x2 * x) * (1 - x6)
     stiffness[...] = (8 * w / z0**2) * x4 * (3 * x6 - 1)
+
+
+@use_loop
+def continued_lennard_jones(
+    base: Array,
+    u: Array,
+    ends: Triple,
+    law: tuple[float, float],
+    energy: Array,
+    slope: Array,
+    stiffness: Array,
+) -> None:
+    """Write `lennard_jones` of the `law` (w, z₀) at the gap `base` + `u`.
+
+    `ends` has smallest gaps, and pressures and stiffnesses with which the law continues there.
+    """
+    (least, bound, stiff), (w, z0) = ends, law
+    gap = base + u
+    inside = np.maximum(gap, least)
+    lennard_jones(inside, w, z0, energy, slope, stiffness)
+    below = gap - inside
+    energy += below * (0.5 * stiff * below - bound)
+    slope += stiff * below
+    np.copyto(stiffness, stiff, where=below < 0)
+
+
+@use_loop
+def lennard_jones_chords(
+    base: Array,
+    u: Array,
+    known: Triple,
+    ends: tuple[Array, Array],
+    law: tuple[float, float],
+    least_way: float,
+    out: Array,
+) -> None:
+    """Write the slopes of chords from the gap `base` + `u` to the gap at the pressure p.
+
+    `known` has p, and φ′ and φ″ at the gap; `law` is (w, z₀). `ends` has pressures, above which the
+    gap falls by the softness, also in `ends`, times the rest. φ″ stays where p ≤ 0 and the gap is
+    above z₀, where the chord is not longer than `least_way`, and where it falls.
+    """
+    (p, slope, stiffness), (bound, softness), (w, z0) = known, ends, law
+    gap, wanted = base + u, np.maximum(p, 0.0)
+    inside = np.minimum(wanted, bound)
+    goal = z0 / np.cbrt(cubic_root(inside * (3 * z0 / (8 * w)))) - (wanted - inside) * softness
+    way = gap - goal
+    far = ((p > 0) | (gap < z0)) & (np.abs(way) > least_way)
+    chord = np.divide(p + slope, way, out=np.zeros_like(way), where=far)
+    out[...] = np.where(chord > 0, chord, stiffness)
+
+
+def cubic_root(c: Array) -> Array:
+    """The largest root y of y³ − y = c, for c ≥ 0."""
+    t = 1.5 * math.sqrt(3) * c
+    inside = np.cos(np.arccos(np.minimum(t, 1.0)) / 3)
+    beyond = np.cosh(np.arccosh(np.maximum(t, 1.0)) / 3)
+    return np.asarray(2 / math.sqrt(3) * np.where(t < 1, inside, beyond))
 
 
 @use_loop

@@ -94,6 +94,89 @@ inline void lennard_jones(Rows<const double> gap, double w, double z0, Rows<doub
     over_rows(some, gap, energy, slope, stiffness);
 }
 
+using Triple = std::tuple<Rows<const double>, Rows<const double>, Rows<const double>>;
+using Pair = std::pair<Rows<const double>, Rows<const double>>;
+
+inline void continued_lennard_jones(Rows<const double> base, Rows<const double> u, const Triple& ends,
+                                    const std::pair<double, double>& law, Rows<double> energy,
+                                    Rows<double> slope, Rows<double> stiffness) {
+    const double w = law.first, z0 = law.second, a = w / 3, b = 8 * w / (3 * z0), c = 8 * w / (z0 * z0);
+    const Rows<const double> least = std::get<0>(ends), bound = std::get<1>(ends);
+    const Rows<const double> stiff = std::get<2>(ends);
+    const auto some = [&](Index begin, Index end) {
+        for (Index i = begin; i < end; ++i) {
+            const double *base_i = base[i], *u_i = u[i], *least_i = least[i], *bound_i = bound[i],
+                         *stiff_i = stiff[i];
+            double *e = energy[i], *s = slope[i], *k = stiffness[i];
+#pragma omp simd
+            for (Index j = 0; j < base.length; ++j) {
+                const double gap = base_i[j] + u_i[j], inside = std::max(gap, least_i[j]);
+                const double below = gap - inside;
+                const double x = z0 / inside, x2 = x * x, x4 = x2 * x2, x6 = x4 * x2;
+                e[j] = -a * x2 * (4 - x6) + below * (0.5 * stiff_i[j] * below - bound_i[j]);
+                s[j] = b * (x2 * x) * (1 - x6) + stiff_i[j] * below;
+                k[j] = below < 0 ? stiff_i[j] : c * x4 * (3 * x6 - 1);
+            }
+        }
+        return Sums{};
+    };
+    over_rows(some, base, u, least, bound, stiff, energy, slope, stiffness);
+}
+
+// The root of t² + c t³ = 1 for c ≥ 0, to 1e-6.
+inline double repulsion_root(double c) {
+    const double below = 1 / std::sqrt(1 + c), above = 1 / std::sqrt(1 + c * below);
+    double t = std::sqrt(below * above);
+    for (int k = 0; k < 4; ++k) {
+        const double t2 = t * t;
+        t -= (t2 + c * t2 * t - 1) / (2 * t + 3 * c * t2);
+    }
+    return t;
+}
+
+// Cube root of a positive, normal number to 1e-10.
+inline double cube_root(double t) {
+    std::int64_t bits;
+    std::memcpy(&bits, &t, sizeof bits);
+    bits = std::int64_t(int(double(int(bits >> 32)) * (1.0 / 3)) + 715094163) << 32;  // within 4 %
+    double x;
+    std::memcpy(&x, &bits, sizeof x);
+    for (int k = 0; k < 3; ++k) x = (2 * x + t / (x * x)) * (1.0 / 3);
+    return x;
+}
+
+inline void lennard_jones_chords(Rows<const double> base, Rows<const double> u, const Triple& known,
+                                 const Pair& ends, const std::pair<double, double>& law,
+                                 double least_way, Rows<double> out) {
+    const Rows<const double> p = std::get<0>(known), slope = std::get<1>(known);
+    const Rows<const double> stiffness = std::get<2>(known), bound = ends.first, softness = ends.second;
+    const double z0 = law.second, scale = 3 * z0 / (8 * law.first);
+    const auto some = [&](Index begin, Index end) {
+        for (Index i = begin; i < end; ++i) {
+            const double *base_i = base[i], *u_i = u[i], *p_i = p[i], *s = slope[i], *k = stiffness[i],
+                         *bound_i = bound[i], *per_stiff = softness[i];
+            double* result = out[i];
+#pragma omp simd
+            for (Index j = 0; j < base.length; ++j) {
+                // No branches: the compiler vectorises this loop only if all alternatives are computed.
+                const double gap = base_i[j] + u_i[j], pressure = p_i[j], most = bound_i[j];
+                const double wanted = pressure > 0 ? pressure : 0.0;
+                const double inside = wanted < most ? wanted : most;
+                const double beyond = (wanted - inside) * per_stiff[j];
+                const double goal = z0 * cube_root(repulsion_root(inside * scale)) - beyond;
+                const double way = gap - goal, away = std::abs(way);
+                const double far = away > least_way ? 1.0 : 0.0;
+                const double repels = pressure > 0 ? 1.0 : gap < z0 ? 1.0 : 0.0;
+                const double taken = far * repels * (pressure + s[j]) / (far > 0 ? way : 1.0);
+                const double tangent = k[j];
+                result[j] = taken > 0 ? taken : tangent;
+            }
+        }
+        return Sums{};
+    };
+    over_rows(some, base, u, p, slope, stiffness, bound, softness, out);
+}
+
 template <class T>
 void define_newton(py::module_& module) {
     module.def("add_curvature", &add_curvature<T>);
@@ -102,4 +185,8 @@ void define_newton(py::module_& module) {
     module.def("largest_ratio", &largest_ratio<T>);
 }
 
-inline void define_lennard_jones(py::module_& module) { module.def("lennard_jones", &lennard_jones); }
+inline void define_lennard_jones(py::module_& module) {
+    module.def("lennard_jones", &lennard_jones);
+    module.def("continued_lennard_jones", &continued_lennard_jones);
+    module.def("lennard_jones_chords", &lennard_jones_chords);
+}

@@ -172,7 +172,10 @@ class Companions:
         ]
         if not lowered or all(contact == coarse for contact in lowered):
             return self.reference
-        return work_curve(impacts_of(loads_at(lowered, depths), self.case.unloading.method))
+        loads = loads_at(lowered, depths)
+        if self._follows_paths:
+            loads = loads[1:]  # at equal depths, weaker bodies do less work
+        return work_curve(impacts_of(loads, self.case.unloading.method))
 
     def others(self, progress: Say = ignore) -> list[WorkCurve]:
         """Curves of other surfaces of the same kind (other seeds or places of the scan)."""

@@ -39,25 +39,19 @@ class BoundedLaw:
         self.base = base
         self.yields = bool(np.all(np.isfinite(limit)))
         bound = np.asarray(limit if self.yields else contact.pair.contact_modulus, dtype=float)
-        self._law = law_of(contact) if box is None else nodes_of(contact, box)
-        self._z0 = law_of(contact).equilibrium_separation
+        self._whole: CohesiveLaw = law_of(contact)
+        self._law = self._whole if box is None else nodes_of(contact, box)
         self.steep = self._law.steep
         self.least = self._law.gap_at(bound)
-        self._slope = -bound
-        self._stiff = 0.0 if self.yields else self._law.stiffness(self.least)
+        self._bound: Array = bound
+        self._stiff: Array = np.asarray(0.0 if self.yields else self._law.stiffness(self.least))
+        least, bound, stiff = (_rows(of, base) for of in (self.least, bound, self._stiff))
+        self._ends = least, bound, stiff
+        self._soft = _rows(np.asarray(0.0 if self.yields else 1 / self._stiff), base)
 
     def __call__(self, u: Array) -> tuple[Array, Array, Array]:
         """Return energy (J/m²), attraction (Pa) and stiffness (Pa/m) at the displacement `u`."""
-        gap = self.base + u
-        inside = np.maximum(gap, self.least)
-        energy, slope, stiff = self._law.potential(inside)
-        below = gap - inside
-        if below.any():
-            energy += below * (self._slope + 0.5 * self._stiff * below)
-            if not self.yields:
-                slope += self._stiff * below
-            np.copyto(stiff, self._stiff, where=below < 0)
-        return energy, slope, stiff
+        return self._law.continued(self.base, u, self._ends)
 
     def secant(self, u: Array, p: Array, slope: Array, stiff: Array) -> Array:
         """Slope (Pa/m) of the chord between the gap of a node and the gap at its pressure `p`.
@@ -65,20 +59,9 @@ class BoundedLaw:
         The repulsion is so steep that Newton steps along its tangent would be far too short or too
         long, but the pressures of a step are nearly right.
         """
-        gap, z0 = self.base + u, self._z0
-        at = np.flatnonzero((p > 0) | (gap < z0))
-        limit = np.broadcast_to(-self._slope, p.shape).ravel()[at]
-        wanted = np.maximum(p.ravel()[at], 0.0)
-        goal = self._law.gap_at(np.minimum(wanted, limit))
-        if not self.yields:
-            goal -= np.maximum(wanted - limit, 0.0) / self._stiff
-        way = gap.ravel()[at] - goal
-        far = np.abs(way) > _TANGENT * z0
-        chord = np.zeros_like(way)
-        np.divide((p + slope).ravel()[at], way, out=chord, where=far)
-        slopes: Array = stiff.copy()
-        slopes.ravel()[at] = np.where(chord > 0, chord, slopes.ravel()[at])
-        return slopes
+        known, (least, bound, _) = (p, slope, stiff), self._ends
+        least_way = _TANGENT * self._whole.equilibrium_separation
+        return self._whole.chords(self.base, u, known, (least, bound, self._soft), least_way)
 
     def beyond(self, u: Array) -> Array:
         """Distance (m) by which the gap is smaller than `least`: the new plastic displacement."""
@@ -87,4 +70,11 @@ class BoundedLaw:
     def continuation(self, u: Array) -> Array:
         """Energy (J/m²) of the linear continuation."""
         below = -self.beyond(u)
-        return below * (self._slope + 0.5 * self._stiff * below)
+        return below * (0.5 * self._stiff * below - self._bound)
+
+
+def _rows(values: Array, like: Array) -> Array:
+    """`values` in the shape of `like`, as the compiled loops take them."""
+    if values.ndim == 0:
+        values = np.full(like.shape[-1:], values)
+    return np.broadcast_to(values, like.shape)

@@ -30,7 +30,13 @@ from restitution.contact.models import (
 from restitution.contact.state import Array, State
 from restitution.errors import CaseError
 from restitution.numerics.box import Box
-from restitution.numerics.expressions import lennard_jones
+from restitution.numerics.expressions import (
+    Triple,
+    continued_lennard_jones,
+    cubic_root,
+    lennard_jones,
+    lennard_jones_chords,
+)
 from restitution.numerics.quadrature import integrate_adaptively
 from restitution.theory import LennardJones
 
@@ -76,8 +82,24 @@ class NodeLaw(Protocol):
 
     def gap_at(self, pressure: Array) -> Array: ...
 
+    def continued(self, base: Array, u: Array, ends: Triple) -> tuple[Array, Array, Array]:
+        """New arrays of energy, traction and stiffness at the gap `base` + `u`.
 
-class CohesiveLaw(Adhesion):
+        Below the smallest gaps of `ends`, the law continues with the pressures and stiffnesses.
+        """
+        least, bound, stiff = ends
+        gap = base + u
+        inside = np.maximum(gap, least)
+        energy, slope, stiffness = self.potential(inside)
+        below = gap - inside
+        if below.any():
+            energy += below * (0.5 * stiff * below - bound)
+            slope += stiff * below
+            np.copyto(stiffness, stiff, where=below < 0)
+        return energy, slope, stiffness
+
+
+class CohesiveLaw(Adhesion, NodeLaw):
     """A traction law between the surfaces, as a function of their gap g.
 
     A law defines `energy`, `traction`, `stiffness`, `gap_of_largest_traction` and the two fields of
@@ -110,6 +132,28 @@ class CohesiveLaw(Adhesion):
     def potential(self, gap: Array) -> tuple[Array, Array, Array]:
         """New arrays of energy, traction and stiffness."""
         return self.energy(gap), self.traction(gap), self.stiffness(gap)
+
+    def chords(self, base: Array, u: Array, known: Triple, ends: Triple, least_way: float) -> Array:
+        """Slopes (Pa/m) of the chords from the gap `base` + `u` to the gap at the pressure.
+
+        `known` are the pressure of each node, and traction and stiffness at its gap; `ends` are
+        those of `continued`, with the softness (m/Pa) in place of the stiffness. The stiffness
+        stays where neither repels, where the chord is not longer than `least_way` (m), and where
+        it falls.
+        """
+        (p, slope, stiffness), (_, bound, softness) = known, ends
+        gap = base + u
+        at = np.flatnonzero((p > 0) | (gap < self.equilibrium_separation))
+        limit, wanted = bound.ravel()[at], np.maximum(p.ravel()[at], 0.0)
+        inside = np.minimum(wanted, limit)
+        goal = self.gap_at(inside)
+        goal -= (wanted - inside) * softness.ravel()[at]
+        way = gap.ravel()[at] - goal
+        chord = np.zeros_like(way)
+        np.divide((p + slope).ravel()[at], way, out=chord, where=np.abs(way) > least_way)
+        slopes: Array = stiffness.copy()
+        slopes.ravel()[at] = np.where(chord > 0, chord, slopes.ravel()[at])
+        return slopes
 
     def at_nodes(self, contact: Contact, box: Box) -> NodeLaw:
         """The law at the nodes of `box`, by default the same at all."""
@@ -315,9 +359,20 @@ class Cohesive(CohesiveLaw):
         lennard_jones(gap, w, z0, energy, slope, stiffness)
         return energy, slope, stiffness
 
+    def continued(self, base: Array, u: Array, ends: Triple) -> tuple[Array, Array, Array]:
+        energy, slope, stiffness = (np.empty(base.shape) for _ in range(3))
+        law = self.work_of_adhesion, self.equilibrium_separation
+        continued_lennard_jones(base, u, ends, law, energy, slope, stiffness)
+        return energy, slope, stiffness
+
+    def chords(self, base: Array, u: Array, known: Triple, ends: Triple, least_way: float) -> Array:
+        law, out = (self.work_of_adhesion, self.equilibrium_separation), np.empty(base.shape)
+        lennard_jones_chords(base, u, known, ends[1:], law, least_way, out)
+        return out
+
     def gap_at(self, pressure: Array) -> Array:
         w, z0 = self.work_of_adhesion, self.equilibrium_separation
-        return np.asarray(z0 / np.cbrt(_cubic_root(pressure * 3 * z0 / (8 * w))))
+        return np.asarray(z0 / np.cbrt(cubic_root(pressure * 3 * z0 / (8 * w))))
 
     def largest_softening(self, smallest_gap: float) -> float:
         x = np.minimum(self.equilibrium_separation / np.asarray(smallest_gap), _SOFTEST)
@@ -328,10 +383,3 @@ class Cohesive(CohesiveLaw):
 
     def rigid_sphere_energy(self, gap: float, radius: float) -> float:
         return float(self._law.rigid_sphere_energy(gap, radius))
-
-
-def _cubic_root(c: Array) -> Array:
-    t = 1.5 * math.sqrt(3) * c
-    inside = np.cos(np.arccos(np.minimum(t, 1.0)) / 3)
-    beyond = np.cosh(np.arccosh(np.maximum(t, 1.0)) / 3)
-    return 2 / math.sqrt(3) * np.where(t < 1, inside, beyond)

@@ -27,7 +27,8 @@ from restitution.numerics.box import reframe, shape_of, union
 from restitution.numerics.quadrature import integrate_curve
 
 _RESIDUAL = 1e-8  # tolerance of the solves under tension and at rest
-# States are inserted at the largest tension until it agrees with its parabola within this fraction.
+# States are inserted at the largest tension until it agrees with its parabola within this fraction
+# at the default accuracy, and in proportion to it.
 _PEAK, _MOST_INSERTED = 1e-3, 4
 # Nodes that part one by one make several largest tensions. So a state is inserted on either side
 # of the largest where the next one is farther than _APART z₀, and again if a force differs from
@@ -48,38 +49,47 @@ def separate_cohesive(
     guide this one. If neither has yielded and both come to the same equilibrium, the states below
     it are taken from `known`.
     """
-    yield from _between_nodes(_with_largest_tension(_separating(state, accuracy, known)))
+    own: list[CohesiveState] = []
+    joined = _separating(state, accuracy, known, own)
+    if joined and min(new.force for new in joined) <= min(new.force for new in own):
+        yield from (*own, *joined)  # the states around the largest tension are known
+    else:
+        loose = accuracy / ACCURACY
+        path = _with_largest_tension((*own, *joined), loose * _PEAK)
+        yield from _between_nodes(path, loose)
 
 
 def _separating(
-    state: CohesiveState, accuracy: float, known: Sequence[State]
-) -> Iterator[CohesiveState]:
-    yield state
-    tension = max(0.0, -state.force)
+    state: CohesiveState, accuracy: float, known: Sequence[State], own: list[CohesiveState]
+) -> Sequence[CohesiveState]:
+    """Append the states of unloading to `own`, and return those that are taken from `known`."""
+    own.append(state)
     loaded, scale = state, reference_energy(state, loading=False)
     state = replace(state, is_first_loading=False, before=None)
     # Otherwise the steps of loading are too long.
     if accuracy >= law_of(loaded.contact).work_tolerance:
+        passed = _shared(loaded, loaded.indentation, known)
         for earlier in _branch(loaded):
             state = _reversed(loaded, earlier)
-            tension = max(tension, -state.force)
-            yield state
+            own.append(state)
+            for number, other in enumerate(passed):
+                if other.box_displacement is earlier.box_displacement:
+                    return list(_continued(state, passed[number:]))
     shared = _shared(loaded, state.indentation, known)
     guide = Guide.of(known, loaded)
     back = partial(follow, residual=_RESIDUAL, accuracy=accuracy, scale=scale, guide=guide)
     for meeting in shared[:: max(1, len(shared) // _MEETINGS)]:
-        for new in back(state, meeting.indentation):
-            tension = max(tension, -new.force)
-            state = new
-            yield new
+        own.extend(back(state, meeting.indentation))
+        state = own[-1]
         if _is_same(state, meeting):
-            yield from _continued(state, shared[shared.index(meeting) :])
-            return
+            return list(_continued(state, shared[shared.index(meeting) :]))
+    tension = max(-one.force for one in own)
     for new in back(state, -math.inf):
+        own.append(new)
         tension = max(tension, -new.force)
-        yield new
         if new.contact_nodes == 0 and -new.force <= _FARTHEST * tension and is_unique(new):
-            return
+            break
+    return ()
 
 
 def _branch(state: CohesiveState) -> Iterator[CohesiveState]:
@@ -107,19 +117,27 @@ def _reversed(loaded: CohesiveState, earlier: CohesiveState) -> CohesiveState:
     )
 
 
-def _with_largest_tension(path: Iterator[CohesiveState]) -> Iterator[CohesiveState]:
-    """Yield `path`, with states inserted where the tension is largest between its states."""
+def _with_largest_tension(
+    path: Sequence[CohesiveState], tolerance: float
+) -> Iterator[CohesiveState]:
+    """Yield `path`, with states inserted where the tension is largest between its states.
+
+    `tolerance` is that of the largest tension, as a fraction.
+    """
     a, b = None, None
     for c in path:
         if b is not None:
-            yield from _peak(a, b, c)
+            yield from _peak(a, b, c, tolerance)
         a, b = b, c
     assert b is not None
     yield b
 
 
-def _between_nodes(path: Iterator[CohesiveState]) -> Iterator[CohesiveState]:
-    """Yield `path`, with states inserted on either side of the largest tension."""
+def _between_nodes(path: Iterator[CohesiveState], loose: float) -> Iterator[CohesiveState]:
+    """Yield `path`, with states inserted on either side of the largest tension.
+
+    They are `loose` times as far apart as by default, and as inaccurate.
+    """
     held: list[CohesiveState] = []  # from the state before that of the largest tension
     tension = 0.0
     for state in path:
@@ -131,29 +149,35 @@ def _between_nodes(path: Iterator[CohesiveState]) -> Iterator[CohesiveState]:
     for _ in range(_ROUNDS):
         k = min(range(len(held)), key=lambda i: held[i].force)
         top, ends = held[k], (*held[max(k - 1, 0) : k], *held[k + 1 : k + 2])
-        inserted = [_between(end, top, at) for end in ends if (at := _halfway(end, top))]
+        inserted = [_between(end, top, at) for end in ends if (at := _halfway(end, top, loose))]
         held = sorted([*held, *inserted], key=lambda state: -state.indentation)
-        if len(ends) < 2 or all(_on_parabola(ends[0], top, ends[1], new) for new in inserted):
+        if len(ends) < 2:
+            break
+        if all(_on_parabola((ends[0], top, ends[1]), new, loose) for new in inserted):
             break
     yield from held
 
 
-def _halfway(end: CohesiveState, top: CohesiveState) -> float | None:
+def _halfway(end: CohesiveState, top: CohesiveState, loose: float) -> float | None:
     """Indentation between two states of one branch; None if they are near each other."""
     way = abs(end.indentation - top.indentation)
-    near = way <= _APART * law_of(top.contact).equilibrium_separation
+    near = way <= loose * _APART * law_of(top.contact).equilibrium_separation
     return None if near or end.jumps != top.jumps else 0.5 * (end.indentation + top.indentation)
 
 
-def _on_parabola(a: CohesiveState, b: CohesiveState, c: CohesiveState, new: CohesiveState) -> bool:
+def _on_parabola(
+    around: tuple[CohesiveState, CohesiveState, CohesiveState], new: CohesiveState, loose: float
+) -> bool:
     """Whether the force of `new` is that of the parabola through three states."""
-    slope, second = _parabola(a, b, c)
-    x = new.indentation - b.indentation
-    expected = b.force + x * (slope + second * x)
-    return abs(new.force - expected) <= _SMOOTH * abs(expected)
+    slope, second = _parabola(*around)
+    x = new.indentation - around[1].indentation
+    expected = around[1].force + x * (slope + second * x)
+    return abs(new.force - expected) <= loose * _SMOOTH * abs(expected)
 
 
-def _peak(a: CohesiveState | None, b: CohesiveState, c: CohesiveState) -> Iterator[CohesiveState]:
+def _peak(
+    a: CohesiveState | None, b: CohesiveState, c: CohesiveState, tolerance: float
+) -> Iterator[CohesiveState]:
     """Yield `b` and the states inserted beside it."""
     states = [b]
     left, middle, right = a, b, c
@@ -164,11 +188,11 @@ def _peak(a: CohesiveState | None, b: CohesiveState, c: CohesiveState) -> Iterat
             break
         at, expected = _vertex(left, middle, right)
         deeper = at > middle.indentation
-        if abs(at - middle.indentation) < _PEAK * abs(right.indentation - left.indentation):
+        if abs(at - middle.indentation) < tolerance * abs(right.indentation - left.indentation):
             break
         new = _between(left if deeper else right, middle, at)
         states.append(new)
-        if abs(new.force - expected) <= _PEAK * abs(expected):
+        if abs(new.force - expected) <= tolerance * abs(expected):
             break
         if new.force < middle.force:
             left, right = (left, middle) if deeper else (middle, right)

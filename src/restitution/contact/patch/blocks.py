@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.contact.cohesive.bounded_law import law_of
+from restitution.contact.cohesive.law import NodeLaw
 from restitution.contact.contact import Contact
 from restitution.contact.influence import half_space
 from restitution.contact.state import Array
@@ -245,7 +246,7 @@ def _steepness(curve: AttractionCurve) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class BlockLaw:
+class BlockLaw(NodeLaw):
     """The law at nodes; arrays of their shape.
 
     Each node has a `row` of `tables`, whose first point is at the gap `first` (m), with a point
