@@ -266,6 +266,29 @@ def test_roughness_weakens_adhesion_and_the_pull_off_is_independent_of_the_cells
     assert forces[0] == approx(forces[1], rel=0.01)
 
 
+def test_all_that_patches_lose_in_jumps_and_half_of_what_they_lose_in_yield_is_an_error():
+    path = list(rs.unloading_path(rs.solve(adhesive(0.2e-9, 48, 4e-9), 0.2e-9)))
+    law = path[0].contact.adhesion
+    table, none = law.table, np.zeros_like(law.table.lost)
+    nominal = 1e-4 * math.prod(path[0].contact.grid.size)  # J, of 1e-4 J/m²
+
+    def separation(lost, jumped):
+        law.__dict__["table"] = replace(table, lost=lost, jumped=jumped)
+        return law.separation_of(path)
+
+    ends = [
+        separation(none, none),
+        separation(none + 1e-4, none),
+        separation(none + 1e-4, none + 1e-4),
+    ]
+    law.__dict__["table"] = table
+    lost = [end.adhesive_loss - ends[0].adhesive_loss for end in ends]
+    added = [math.sqrt(end.error**2 - ends[0].error ** 2) for end in ends]
+    assert lost[1] == approx(lost[2], rel=1e-12)
+    assert 0.3 * nominal < lost[1] <= nominal
+    assert added[1:] == approx([0.5 * lost[1], lost[1]], rel=1e-6)
+
+
 def test_patches_are_averaged_at_equal_gaps():
     contact = rs.Contact(flat(FINE_PAIR), asperities(0.2e-9), adhesion=Cohesive(W), periodic=True)
     curve = PatchAttraction((contact.surface,), 14e-9, Cohesive(W), flat(FINE_PAIR)).curve(

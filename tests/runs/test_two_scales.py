@@ -188,6 +188,9 @@ def test_patches_that_lose_much_in_jumps_name_cells_that_need_none(monkeypatch):
     monkeypatch.setattr(two_scales, "_LOST", 0.02)
     assert not list(patches_that_jump(given, contact))  # not solved yet
     solve_patches(contact)
+    lost = contact.adhesion.lost_in_jumps / 0.08
+    assert 0.025 < lost < 0.035
+    assert contact.adhesion.pull_off_error(None) == approx(lost)
     (line,) = patches_that_jump(given, contact)
     assert "the patches lose 3% of the work of adhesion in jumps" in line
     assert 'use grid.nodes = [128, 128] and grid.spacing = "0.7 nm", without patches' in line

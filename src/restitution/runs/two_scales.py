@@ -33,8 +33,7 @@ REFINED = (
 # the longest wave of the patches, which should be at most this fraction of the contact radius.
 _WIDE, _LONGEST = 0.05, 0.5
 
-# Share of the work of adhesion that patches may lose in jumps: their law for unloading is that of
-# loading (docs/two-scales.md: off by more than its error where they lose 0.16).
+# Share of the work of adhesion that patches may lose in jumps without a warning.
 _LOST = 0.05
 
 
@@ -127,8 +126,8 @@ def patches_that_jump(case: Case, contact: Contact) -> Iterator[str]:
     keys = None if grid is None else _cells(case, grid, times)
     remedy = "leave out short waves (roughness.shortest)" if keys is None else f"use {keys}"
     yield (
-        f"the patches lose {lost:.0%} of the work of adhesion in jumps, so pull-off force and "
-        f"sticking velocity may be off by more than their errors; {remedy}, without patches"
+        f"the patches lose {lost:.0%} of the work of adhesion in jumps, which adds to the errors "
+        f"of pull-off force and COR; {remedy}, without patches"
     )
 
 

@@ -65,20 +65,22 @@ class AttractionCurve:
         """Whether `of` need not solve `contact`."""
         return is_kept(contact.surface, _models(contact, shape))
 
-    def at(self, gap: Array) -> tuple[Array, Array]:
-        """Pressure and dissipated work at each `gap` (m); rigid bodies beyond the first state."""
+    def at(self, gap: Array) -> tuple[Array, Array, Array]:
+        """Pressure, `lost` and `jumped` at each `gap` (m); rigid bodies beyond the first state."""
         from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
         inside = np.clip(gap, self.gap[-1], self.gap[0])
         # The energies are more accurate than an integral of the pressures between the states.
         work = CubicHermiteSpline(self.gap[::-1], self.work[::-1], -self.pressure[::-1])
         p = -work.derivative()(inside)
-        lost = PchipInterpolator(self.gap[::-1], self.lost[::-1])(inside)
+        lost, jumped = (
+            PchipInterpolator(self.gap[::-1], of[::-1])(inside) for of in (self.lost, self.jumped)
+        )
         far = gap > self.gap[0]
         if far.any():
             points = np.geomspace(self.gap[0], float(gap.max()), _RIGID)
             p[far] = PchipInterpolator(points, self._rigid(points))(gap[far])
-        return p, lost
+        return p, lost, jumped
 
     def _rigid(self, gap: Array) -> Array:
         """Nominal pressure (Pa) of rigid bodies at each `gap` (m)."""
@@ -157,10 +159,12 @@ class AttractionTable:
     Attributes:
         pressure: Nominal pressure (Pa) during loading; tension is negative.
         lost: Work per area dissipated by yielding and by jumps so far (J/m²).
+        jumped: That by jumps (J/m²).
     """
 
     pressure: Tabulated
     lost: Array
+    jumped: Array
 
     @classmethod
     def of(cls, curves: Sequence[AttractionCurve]) -> AttractionTable:
@@ -170,8 +174,8 @@ class AttractionTable:
         last = max(c.gap[0] for c in curves) + _FAR * z0
         # Denser where the pressure varies fast; the uniform table interpolates this one.
         gap = np.linspace(first, last, _CELLS + 1)
-        p, lost = np.mean([c.at(gap) for c in curves], axis=0)
-        return cls(Tabulated(first, (last - first) / _CELLS, p), lost)
+        p, lost, jumped = np.mean([c.at(gap) for c in curves], axis=0)
+        return cls(Tabulated(first, (last - first) / _CELLS, p), lost, jumped)
 
     @property
     def _rest(self) -> float:
@@ -202,9 +206,9 @@ class AttractionTable:
         """Pressure (Pa) at each `gap` (m)."""
         return -self.potential(gap)[1]
 
-    def lost_at(self, gap: Array) -> Array:
-        """Work per area dissipated by loading to each `gap` (J/m²)."""
-        return self.pressure.linear(self.lost, gap)
+    def lost_at(self, gap: Array) -> tuple[Array, Array]:
+        """`lost` and `jumped` after loading to each `gap` (m)."""
+        return self.pressure.linear(self.lost, gap), self.pressure.linear(self.jumped, gap)
 
     def gap_at(self, pressure: Array) -> Array:
         """Gap (m) at which the pressure (Pa, not negative) has this value."""

@@ -18,7 +18,7 @@ from restitution.contact.cohesive.equilibrium import box_gap
 from restitution.contact.cohesive.law import COARSEST, Cohesive, CohesiveLaw, NodeLaw
 from restitution.contact.contact import Contact
 from restitution.contact.interface import NoAttraction
-from restitution.contact.models import COMPANION, Plasticity, Separation
+from restitution.contact.models import COMPANION, Plasticity, Separation, adhesive_length
 from restitution.contact.patch.attraction import AttractionCurve, AttractionTable
 from restitution.contact.patch.blocks import BlockLaw, BlockTables, Shape, shape_in
 from restitution.contact.patch.equilibrium import PatchState, solve_with_patches
@@ -29,10 +29,9 @@ from restitution.errors import CaseError
 from restitution.numerics.box import Box
 from restitution.numerics.read_only import freeze
 from restitution.surfaces import Surface, rms_slope
-from restitution.theory import JKR
 
-# The unloading branch of patches that yield or jump is known by its energy, not by its tension.
-# This is the error of the energy, as a fraction of the dissipated energy.
+# The unloading branch of patches that yield is known by its energy, not by its tension. This is the
+# error of the energy, as a fraction of the dissipated energy.
 _OF_BRANCH = 0.5
 _INDENTED = 0.5  # of the mean gap: asperities are as sharp at any indentation
 
@@ -198,6 +197,10 @@ class PatchAttraction(CohesiveLaw):
         known = filter(self._is_known, self.patches)
         return max((float(self.curve(patch).jumped.max()) for patch in known), default=0.0)
 
+    def pull_off_error(self, state: State) -> float:
+        # Unloading patches hold on until the work of their jumps is done, too.
+        return self.lost_in_jumps / self.work_of_adhesion
+
     def _is_known(self, patch: Surface) -> bool:
         return AttractionCurve.is_known(self._contact(patch), self._shape(patch))
 
@@ -250,12 +253,15 @@ class PatchAttraction(CohesiveLaw):
     def separation_of(self, path: list[State]) -> Separation:
         whole = super().separation_of(path)
         start = path[0]
-        lost = float(self.table.lost_at(box_gap(start)).sum()) * start.contact.grid.cell_area
+        sums = (float(of.sum()) for of in self.table.lost_at(box_gap(start)))
+        lost, jumped = (of * start.contact.grid.cell_area for of in sums)
+        # A contact may jump, too, where its patches do, so their jumps may count twice.
+        branch = _OF_BRANCH * (lost - jumped) + jumped
         return replace(
             whole,
             unloading_work=whole.unloading_work - lost,
             adhesive_loss=whole.adhesive_loss + lost,
-            error=math.hypot(whole.error, _OF_BRANCH * lost),
+            error=math.hypot(whole.error, branch),
         )
 
     @property
@@ -292,7 +298,7 @@ class PatchAttraction(CohesiveLaw):
     def length(self, pair: Pair) -> float:
         if pair.flat:
             return 0.0
-        return float(JKR(pair.radius, pair.contact_modulus, self.table.work).adhesive_length)
+        return adhesive_length(pair, self.table.work)
 
     def zone_length(self, pair: Pair) -> float:
         return pair.contact_modulus * self.reach**2 / self.table.work
