@@ -123,6 +123,16 @@ def test_the_gap_is_the_inverse_of_the_pressure(two_scales):
         assert table.work(table.gap_at(pressure))[1] == approx(pressure, rel=1e-3)
 
 
+def test_a_patch_that_flows_at_the_end_of_its_table_has_a_gap_at_larger_pressures(two_scales):
+    table = two_scales.adhesion.table
+    values = np.minimum(table.pressure.values, table.pressure.values[50])
+    flows = replace(table, pressure=replace(table.pressure, values=values))
+    with np.errstate(all="raise"):
+        gap = flows.gap_at(np.array([0.5, 1.0, 1.1]) * values[0])
+    assert np.isfinite(gap).all()
+    assert gap[2] < flows.pressure.first - 1e3 * (flows.touch - flows.pressure.first)
+
+
 def test_the_energy_account_of_an_impact_closes(two_scales):
     depths = 250e-9 * np.linspace(0, 1, 41)[1:] ** 1.5
     path = list(rs.loading_path(two_scales, depths))

@@ -26,6 +26,7 @@ _COMPLETE = 0.985  # a patch ends at this fraction of its yield pressure
 # an elastic patch at the same gap and that of the yielding patch: their geometric mean.
 _GIVEN, _PASSES = 0.5, 2
 _CELLS = 1024  # of the table
+_FLAT = 1e-6  # least slope of the pressure beyond the table, in units of its mean slope
 _TOLERANCE = 1e-6
 
 
@@ -175,7 +176,8 @@ class RepulsionTable:
         gap = np.interp(pressure, p.values[::-1], p.points[::-1])
         _, least, slope = p(np.asarray(p.first))
         beyond = np.maximum(np.asarray(pressure) - least, 0.0)
-        return np.asarray(gap + beyond / np.minimum(slope, -1e-300))
+        flat = -_FLAT * least / (p.last - p.first)  # a patch that flows has no slope there
+        return np.asarray(gap + beyond / np.minimum(slope, flat))
 
 
 def _work(pressure: Tabulated, gap: Array) -> tuple[Array, Array, Array]:
