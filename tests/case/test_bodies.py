@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from restitution.case.bodies import FROM_LIBRARY
 from restitution.case.case_file import parse_case
 from restitution.case.interface import Yielding
 from restitution.case.materials import material
@@ -36,6 +37,19 @@ def test_a_material_gives_what_the_table_leaves_out():
     assert body.poissons_ratio == glass.poissons_ratio.value
     assert body.density == 2600
     assert set(case.first.from_library()) == {"youngs_modulus", "poissons_ratio", "hardness"}
+
+
+@pytest.mark.parametrize("key", ["youngs_modulus", "poissons_ratio", "density", "hardness"])
+def test_a_given_value_has_no_spread_even_if_it_is_that_of_the_library(key):
+    known, unit = getattr(material("glass"), key).value, FROM_LIBRARY[key]
+    given = f'{key} = "{known!r} {unit}"' if unit else f"{key} = {known!r}"
+    case = parsed(GLASS.replace(" }", f", {given} }}"))
+    assert getattr(case.first, key) == known
+    of_library = parsed(GLASS).first.from_library()
+    assert set(of_library) - set(case.first.from_library()) == {key}
+    copied = case.refined(2).variant(1).first.model_copy(update={"radius": 1e-4})
+    assert copied.from_library() == case.first.from_library()
+    assert case.yielding() == parsed(GLASS).yielding()
 
 
 def test_a_name_alone_is_a_wall():

@@ -56,6 +56,8 @@ def test_a_case_takes_it_from_its_materials():
 def test_a_given_value_has_no_spread():
     assert case(w='"0.05 J/m^2"').library_adhesion() is None
     assert case(w='"0 J/m^2"').library_adhesion() is None
+    same = f'"{work_of_adhesion("lactose", "lactose").value!r} J/m^2"'
+    assert case(w=same, second="").library_adhesion() is None
 
 
 def test_no_value_is_used_by_omission():

@@ -102,8 +102,17 @@ class BodyTable(Table):
     )
 
     _ratio: float | None = PrivateAttr(default=None)
+    _given: frozenset[str] = PrivateAttr(default=frozenset())
 
     @model_validator(mode="wrap")
+    @classmethod
+    def _with_given(cls, value: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        """Remember the keys that are given: their values have no spread, even if the library's."""
+        table = cls._with_strength(value, handler)
+        if isinstance(value, dict):
+            table._given = frozenset(key for key, of in value.items() if of is not None)
+        return table
+
     @classmethod
     def _with_strength(cls, value: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
         """Read `yield_strength = "H/2.8"`, and remember the ratio."""
@@ -170,7 +179,9 @@ class BodyTable(Table):
             values = {
                 key: supplied
                 for key in FROM_LIBRARY
-                if (supplied := getattr(known, key)) and supplied.value == getattr(self, key)
+                if key not in self._given
+                and (supplied := getattr(known, key))
+                and supplied.value == getattr(self, key)
             }
         if self._ratio is not None and self.hardness is not None:
             known_hardness = values.get("hardness")

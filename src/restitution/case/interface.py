@@ -355,7 +355,7 @@ class InterfaceTable(Table):
 
 def yielding_body(first: BodyTable, second: BodyTable) -> Yields | None:
     """The softer body, or both; None if unknown. A larger body has a smaller `model_error`."""
-    if first == second:
+    if dict(first) == dict(second):
         return "both"
     p, q = _full_pressure(first), _full_pressure(second)
     if p is None or q is None:

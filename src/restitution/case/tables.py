@@ -5,7 +5,12 @@ from __future__ import annotations
 import math
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BeforeValidator, model_validator
+from pydantic import (
+    BeforeValidator,
+    ModelWrapValidatorHandler,
+    PrivateAttr,
+    model_validator,
+)
 
 from restitution.case.bodies import BodyTable, losses_of
 from restitution.case.impacts import ImpactsTable
@@ -66,10 +71,16 @@ class CaseTables(Table):
     unloading: UnloadingTable = UnloadingTable()
     impacts: ImpactsTable | None = None
 
-    @model_validator(mode="before")
+    _adheres_as_library: bool = PrivateAttr(default=False)
+
+    @model_validator(mode="wrap")
     @classmethod
-    def _with_adhesion(cls, value: Any) -> Any:
-        return with_library_adhesion(value)
+    def _with_adhesion(cls, value: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        completed = with_library_adhesion(value)
+        case = handler(completed)
+        if isinstance(value, dict):
+            case._adheres_as_library = completed is not value
+        return case
 
     def bodies(self) -> dict[str, BodyTable]:
         """The tables of both bodies; if [second] is left out, it is the same as [first]."""
@@ -102,12 +113,9 @@ class CaseTables(Table):
         """The work of adhesion of the materials library, if the case uses it."""
         first, second = (body.material for body in self.bodies().values())
         w = self.interface.work_of_adhesion
-        if not w or first is None or second is None:
+        if not self._adheres_as_library or first is None or second is None:
             return None
-        try:
-            known = work_of_adhesion(first, second)
-        except CaseError:
-            return None
+        known = work_of_adhesion(first, second)
         return known if known.value == w else None
 
     def library_size_effect(self) -> tuple[str, Property[float]] | None:
