@@ -26,7 +26,7 @@ from restitution.contact.loading import solve
 from restitution.contact.models import COMPANION
 from restitution.contact.patch.law import PatchAttraction
 from restitution.contact.state import Array
-from restitution.errors import RestitutionError
+from restitution.errors import CaseError, RestitutionError
 from restitution.numerics.grid import Grid
 from restitution.numerics.intervals import half_interval
 from restitution.runs.loss_errors import carried
@@ -37,7 +37,9 @@ from restitution.theory import JKR
 
 TABLE = Path(__file__).with_suffix(".csv")
 CASES, NODES = 12, 320
-WIDER = (1.0, 1.25, 1.6)  # edges of the grid, until the contact stays inside
+# The grid grows until the contact stays inside, and its cells shrink until twice as large ones
+# resolve the law of the patches.
+WIDER, WIDEST, FINER, FINEST = 1.25, 2.0, 0.9, 0.7
 PER_WAVE, RESOLVED = 10, 0.29  # direct cells in the shortest wave, and in the cohesive zone
 PATCH = 256  # direct cells along its edge
 # Cells of the contact in those of the direct solve, and cells of the contact in the split.
@@ -46,10 +48,10 @@ SURFACES = 8
 MATERIALS = {"silica": (72e9, 0.17, 2200.0, 0.05), "lactose": (8e9, 0.3, 1500.0, 0.08)}
 
 
-def draw(seed: int, wider: float = 1.0) -> tuple[str, Contact, float, float]:
+def draw(seed: int, wider: float, finer: float) -> tuple[str, Contact, float, float]:
     """Material, contact on cells that resolve it, longest and shortest wave (m).
 
-    The edge of the grid is `wider` times as long as usual.
+    The edge of the grid is `wider` times as long as usual, and a cell `finer` times.
     """
     rng = np.random.default_rng(seed)
     name = list(MATERIALS)[seed % 2]
@@ -58,8 +60,8 @@ def draw(seed: int, wider: float = 1.0) -> tuple[str, Contact, float, float]:
     rms = 10 ** rng.uniform(-10, -9.3 + 0.6 * (shortest > 12e-9))
     law, flat = Cohesive(w), Body(math.inf, E, nu)
     h = min(shortest / PER_WAVE, RESOLVED * law.zone_length(Pair(flat, flat)))
-    nodes = round(wider * NODES)
-    grid = Grid((nodes, nodes), (h, h))
+    nodes = 8 * round(wider / finer * NODES / 8)
+    grid = Grid((nodes, nodes), (finer * h, finer * h))
     rolloff = shortest * rng.uniform(1.5, 3.5)
     surface = generate_surface(
         grid, kind="self-affine", rms=rms, hurst=0.8, rolloff=rolloff, shortest=shortest, seed=seed
@@ -133,18 +135,24 @@ def error_of(
 
 
 def row_of(seed: int) -> dict[str, object]:
-    for wider in WIDER[:-1]:
+    wider = finer = 1.0
+    while True:
         try:
-            return row_on(seed, wider)
+            return row_on(seed, wider, finer)
         except EdgeReachedError as error:
+            if (wider := wider * WIDER) > WIDEST:
+                raise
             print(seed, error, flush=True)
-    return row_on(seed, WIDER[-1])
+        except CaseError as error:
+            if (finer := finer * FINER) < FINEST:
+                raise
+            print(seed, error, flush=True)
 
 
-def row_on(seed: int, wider: float) -> dict[str, object]:
-    name, direct, rolloff, shortest = draw(seed, wider)
+def row_on(seed: int, wider: float, finer: float) -> dict[str, object]:
+    name, direct, rolloff, shortest = draw(seed, wider, finer)
     pair, h = direct.pair, direct.grid.spacing[0]
-    depth = (0.2 * NODES * h) ** 2 / pair.radius
+    depth = (0.2 * NODES * h / finer) ** 2 / pair.radius
     began = time.process_time()
     collision = collide(solve(direct, depth))
     work = max(collision.loading_work, 1e-25)
