@@ -49,6 +49,9 @@ COARSEST = 0.3
 _COARSEST_ON_ASPERITIES = 0.5
 # Tolerance of the energy balance of a step of unloading, as a fraction of the tolerance of COR.
 _UNACCOUNTED = 0.25
+# Tolerances of periodic contacts, divided by those of others: many asperities jump one by one, and
+# the energy of each is small beside that of all.
+_OF_PERIODIC = 0.2
 # Relative error of the adhesive loss on the coarsest grid that is allowed (docs/adhesion.md).
 _GRID_LOSS = 0.05
 # Relative error of the pull-off force if the grid resolves the range of the attraction.
@@ -208,10 +211,14 @@ class CohesiveLaw(Adhesion, NodeLaw):
                 "finite range; use ConstantBound, or JKRLimit as adhesion"
             )
 
+    def loading_accuracy(self, contact: Contact) -> float:
+        """Error of a step of loading, relative to its energies."""
+        return self.work_tolerance * _share(contact)
+
     def load(
         self, contact: Contact, indentation: float, *, start: State | None, residual: float
     ) -> State:
-        accuracy = self.work_tolerance
+        accuracy = self.loading_accuracy(contact)
         return load_cohesive(
             contact, indentation, start=start, residual=residual, accuracy=accuracy
         )
@@ -223,7 +230,8 @@ class CohesiveLaw(Adhesion, NodeLaw):
         return True
 
     def step(self, state: State, indentation: float, residual: float) -> State:
-        return move(cast(CohesiveState, state), indentation, residual, self.work_tolerance)
+        accuracy = self.loading_accuracy(state.contact)
+        return move(cast(CohesiveState, state), indentation, residual, accuracy)
 
     def enclose(
         self,
@@ -235,13 +243,14 @@ class CohesiveLaw(Adhesion, NodeLaw):
         scale: float,
         residual: float,
     ) -> tuple[State, State] | None:
-        options = {"residual": residual, "scale": scale, "accuracy": self.work_tolerance}
+        accuracy = self.loading_accuracy(contact)
+        options = {"residual": residual, "scale": scale, "accuracy": accuracy}
         return load_until(contact, reached, ahead, start=start, **options)
 
     def unload(
         self, state: State, *, steps: int, tolerance: float, residual: float, known: Sequence[State]
     ) -> Iterator[State]:
-        accuracy = _UNACCOUNTED * tolerance
+        accuracy = _UNACCOUNTED * tolerance * _share(state.contact)
         return separate_cohesive(cast(CohesiveState, state), accuracy=accuracy, known=known)
 
     def separation_of(self, path: list[State]) -> Separation:
@@ -383,3 +392,7 @@ class Cohesive(CohesiveLaw):
 
     def rigid_sphere_energy(self, gap: float, radius: float) -> float:
         return float(self._law.rigid_sphere_energy(gap, radius))
+
+
+def _share(contact: Contact) -> float:
+    return _OF_PERIODIC if contact.periodic else 1.0

@@ -67,7 +67,7 @@ def _separating(
     loaded, scale = state, reference_energy(state, loading=False)
     state = replace(state, is_first_loading=False, before=None)
     # Otherwise the steps of loading are too long.
-    if accuracy >= law_of(loaded.contact).work_tolerance:
+    if accuracy >= law_of(loaded.contact).loading_accuracy(loaded.contact):
         passed = _shared(loaded, loaded.indentation, known)
         for earlier in _branch(loaded):
             state = _reversed(loaded, earlier)
