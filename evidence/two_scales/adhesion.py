@@ -36,7 +36,7 @@ from restitution.surfaces.split import split
 from restitution.theory import JKR
 
 TABLE = Path(__file__).with_suffix(".csv")
-CASES = (*range(12), *range(12, 52, 2))  # odd ones, of lactose, take up to an hour
+CASES = (*range(12), *range(12, 52, 2))  # odd ones, of lactose, can take more than 20 minutes
 NODES = 320
 # The grid grows until the contact stays inside, and its cells shrink until twice as large ones
 # resolve the law of the patches.
