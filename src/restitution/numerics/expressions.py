@@ -86,11 +86,17 @@ def continued_lennard_jones(
 
     `ends` has smallest gaps, and pressures and stiffnesses with which the law continues there.
     """
-    (least, bound, stiff), (w, z0) = ends, law
     gap = base + u
-    inside = np.maximum(gap, least)
-    lennard_jones(inside, w, z0, energy, slope, stiffness)
-    below = gap - inside
+    inside = np.maximum(gap, ends[0])
+    lennard_jones(inside, *law, energy, slope, stiffness)
+    continue_below(gap - inside, ends, energy, slope, stiffness)
+
+
+def continue_below(
+    below: Array, ends: Triple, energy: Array, slope: Array, stiffness: Array
+) -> None:
+    """Continue a law linearly at the smallest gaps of `ends`; `below` is the gap minus these."""
+    _, bound, stiff = ends
     energy += below * (0.5 * stiff * below - bound)
     slope += stiff * below
     np.copyto(stiffness, stiff, where=below < 0)
@@ -112,14 +118,22 @@ def lennard_jones_chords(
     gap falls by the softness, also in `ends`, times the rest. φ″ stays where p ≤ 0 and the gap is
     above z₀, where the chord is not longer than `least_way`, and where it falls.
     """
-    (p, slope, stiffness), (bound, softness), (w, z0) = known, ends, law
+    p, (bound, softness), (w, z0) = known[0], ends, law
     gap, wanted = base + u, np.maximum(p, 0.0)
     inside = np.minimum(wanted, bound)
     goal = z0 / np.cbrt(cubic_root(inside * (3 * z0 / (8 * w)))) - (wanted - inside) * softness
-    way = gap - goal
-    far = ((p > 0) | (gap < z0)) & (np.abs(way) > least_way)
-    chord = np.divide(p + slope, way, out=np.zeros_like(way), where=far)
-    out[...] = np.where(chord > 0, chord, stiffness)
+    repels = (p > 0) | (gap < z0)
+    out[...] = chords_over(np.where(repels, gap - goal, 0.0), known, least_way)
+
+
+def chords_over(way: Array, known: Triple, least_way: float) -> Array:
+    """Slopes over the distances `way`; φ″ stays where these are short, and where the slope falls.
+
+    `known` is that of `lennard_jones_chords`.
+    """
+    p, slope, stiffness = known
+    chord = np.divide(p + slope, way, out=np.zeros_like(way), where=np.abs(way) > least_way)
+    return np.where(chord > 0, chord, stiffness)
 
 
 def cubic_root(c: Array) -> Array:

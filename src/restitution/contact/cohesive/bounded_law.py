@@ -59,9 +59,9 @@ class BoundedLaw:
         The repulsion is so steep that Newton steps along its tangent would be far too short or too
         long, but the pressures of a step are nearly right.
         """
-        known, (least, bound, _) = (p, slope, stiff), self._ends
+        known, ends = (p, slope, stiff), (self._ends[1], self._soft)
         least_way = _TANGENT * self._whole.equilibrium_separation
-        return self._whole.chords(self.base, u, known, (least, bound, self._soft), least_way)
+        return self._whole.chords(self.base, u, known, ends, least_way)
 
     def beyond(self, u: Array) -> Array:
         """Distance (m) by which the gap is smaller than `least`: the new plastic displacement."""

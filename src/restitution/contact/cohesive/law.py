@@ -32,6 +32,8 @@ from restitution.errors import CaseError
 from restitution.numerics.box import Box
 from restitution.numerics.expressions import (
     Triple,
+    chords_over,
+    continue_below,
     continued_lennard_jones,
     cubic_root,
     lennard_jones,
@@ -90,15 +92,10 @@ class NodeLaw(Protocol):
 
         Below the smallest gaps of `ends`, the law continues with the pressures and stiffnesses.
         """
-        least, bound, stiff = ends
         gap = base + u
-        inside = np.maximum(gap, least)
+        inside = np.maximum(gap, ends[0])
         energy, slope, stiffness = self.potential(inside)
-        below = gap - inside
-        if below.any():
-            energy += below * (0.5 * stiff * below - bound)
-            slope += stiff * below
-            np.copyto(stiffness, stiff, where=below < 0)
+        continue_below(gap - inside, ends, energy, slope, stiffness)
         return energy, slope, stiffness
 
 
@@ -136,27 +133,22 @@ class CohesiveLaw(Adhesion, NodeLaw):
         """New arrays of energy, traction and stiffness."""
         return self.energy(gap), self.traction(gap), self.stiffness(gap)
 
-    def chords(self, base: Array, u: Array, known: Triple, ends: Triple, least_way: float) -> Array:
+    def chords(
+        self, base: Array, u: Array, known: Triple, ends: tuple[Array, Array], least_way: float
+    ) -> Array:
         """Slopes (Pa/m) of the chords from the gap `base` + `u` to the gap at the pressure.
 
-        `known` are the pressure of each node, and traction and stiffness at its gap; `ends` are
-        those of `continued`, with the softness (m/Pa) in place of the stiffness. The stiffness
-        stays where neither repels, where the chord is not longer than `least_way` (m), and where
-        it falls.
+        `known` are the pressure of each node, and traction and stiffness at its gap; `ends` are the
+        pressure and the softness (m/Pa) at its smallest gap. The stiffness stays where neither
+        repels, where the chord is not longer than `least_way` (m), and where it falls.
         """
-        (p, slope, stiffness), (_, bound, softness) = known, ends
-        gap = base + u
-        at = np.flatnonzero((p > 0) | (gap < self.equilibrium_separation))
-        limit, wanted = bound.ravel()[at], np.maximum(p.ravel()[at], 0.0)
-        inside = np.minimum(wanted, limit)
-        goal = self.gap_at(inside)
-        goal -= (wanted - inside) * softness.ravel()[at]
-        way = gap.ravel()[at] - goal
-        chord = np.zeros_like(way)
-        np.divide((p + slope).ravel()[at], way, out=chord, where=np.abs(way) > least_way)
-        slopes: Array = stiffness.copy()
-        slopes.ravel()[at] = np.where(chord > 0, chord, slopes.ravel()[at])
-        return slopes
+        p, (bound, softness), gap = known[0], ends, base + u
+        repels = (p > 0) | (gap < self.equilibrium_separation)
+        wanted = np.maximum(p[repels], 0.0)
+        inside = np.minimum(wanted, bound[repels])
+        way = np.zeros_like(gap)
+        way[repels] = gap[repels] - self.gap_at(inside) + (wanted - inside) * softness[repels]
+        return chords_over(way, known, least_way)
 
     def at_nodes(self, contact: Contact, box: Box) -> NodeLaw:
         """The law at the nodes of `box`, by default the same at all."""
@@ -374,9 +366,11 @@ class Cohesive(CohesiveLaw):
         continued_lennard_jones(base, u, ends, law, energy, slope, stiffness)
         return energy, slope, stiffness
 
-    def chords(self, base: Array, u: Array, known: Triple, ends: Triple, least_way: float) -> Array:
+    def chords(
+        self, base: Array, u: Array, known: Triple, ends: tuple[Array, Array], least_way: float
+    ) -> Array:
         law, out = (self.work_of_adhesion, self.equilibrium_separation), np.empty(base.shape)
-        lennard_jones_chords(base, u, known, ends[1:], law, least_way, out)
+        lennard_jones_chords(base, u, known, ends, law, least_way, out)
         return out
 
     def gap_at(self, pressure: Array) -> Array:
