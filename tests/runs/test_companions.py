@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 from restitution.case.case_file import parse_case
+from restitution.collision import collide
 from restitution.contact.cohesive import equilibrium
+from restitution.contact.loading import solve
 from restitution.curve.work_curve import WorkCurve
 from restitution.errors import CaseError
 from restitution.numerics.truncated_newton import minimise_locally
@@ -35,38 +37,78 @@ values = ["1 nm"]
 """
 
 
+DEPTHS = (1e-9, 1.5e-9, 2e-9, 2.5e-9, 3e-9)
+
+
+def works_of(text, folder, depths):
+    """The curve of the run, between impacts that are beyond its depths."""
+    return curve_of(parse_case(text).contact(folder), depths, "path").work[-1 - len(depths) : -1]
+
+
 def test_other_curves_of_a_cohesive_contact_are_compared_at_the_same_impacts(tmp_path):
     """Three impacts of five give the scatter, close to that with all of them."""
-    companions = Companions(parse_case(COHESIVE), tmp_path, [1e-9, 1.5e-9, 2e-9, 2.5e-9, 3e-9])
-    work = companions.own.work[-6:-1]
-    assert companions.reference.work == approx(work[::2], rel=1e-12)
+    work = works_of(COHESIVE, tmp_path, DEPTHS)
+    companions = Companions(parse_case(COHESIVE), tmp_path, DEPTHS, work)
+    own = companions.own.work
+    assert len(own) == 1 + len(work)
+    assert own[0] < work[0]
+    assert np.all((work <= own[1:]) & (own[1:] < 1.1 * work))
+    assert companions.reference.work == approx(own[[0, 3, 5]], rel=1e-12)
     assert companions.weaker(np.ones(5)) is companions.reference
     contact = coarser_contact(companions.case.variant(1).contact(tmp_path))
-    other, full = companions.curve(contact), curve_of(contact, companions.depths, "path")
-    assert other.work[0] < work[0] < work[-1] <= other.work[-1]
-    assert other.at(work) == approx(full.at(work), abs=0.01)
-    assert other.ratio(work) == approx(full.ratio(work), abs=0.02)
-    assert other.pull_off_at(work) == approx(full.pull_off_at(work), rel=0.08)
+    depths = (0.9e-9, *DEPTHS)
+    for other, full in (
+        (companions.own, curve_of(companions.coarse, depths, "path")),
+        (companions.curve(contact), curve_of(contact, depths, "path")),
+    ):
+        assert other.work[0] < work[0] < work[-1] <= other.work[-1] < 1.2 * work[-1]
+        assert other.at(work) == approx(full.at(work), abs=0.01)
+        assert other.ratio(work) == approx(full.ratio(work), abs=0.02)
+        assert other.pull_off_at(work) == approx(full.pull_off_at(work), rel=0.08)
 
 
-def test_another_curve_at_one_depth_takes_two_thirds_of_the_products_of_the_own(
-    tmp_path, monkeypatch
-):
-    products = 0
+def test_bodies_that_are_weaker_by_the_smallest_factor_have_one_path(tmp_path):
+    work = works_of(COHESIVE, tmp_path, DEPTHS[:3])
+    companions = Companions(parse_case(COHESIVE), tmp_path, DEPTHS[:3], work)
+    coarse = companions.coarse
+    weak = replace(coarse, plasticity=coarse.plasticity.scaled(0.7))
+    mixed = companions.weaker(np.array([0.9, 0.7, 0.8]))
+    assert mixed is companions.curve(weak)
+    assert np.all(mixed.at(work) < companions.reference.at(work) - 1e-4)
+
+
+def test_the_own_curve_covers_the_spread_of_the_density(tmp_path):
+    """The density of silica moves the mass, and with it the work at equal velocity."""
+    work = works_of(COHESIVE, tmp_path, DEPTHS[:2])
+    companions = Companions(parse_case(COHESIVE), tmp_path, DEPTHS[:2], work)
+    spread = companions.case.first.from_library()["density"]
+    own = companions.own.work
+    assert own[0] < work[0] * spread.low / spread.value
+    assert own[-1] >= work[-1] * spread.high / spread.value * (1 - 1e-9)
+
+
+def test_another_curve_takes_far_fewer_products_than_the_run(tmp_path, monkeypatch):
+    """Products on a quarter of the nodes count as a quarter."""
+    products = 0.0
 
     def counted(K, *arguments, **options):
         nonlocal products
         before = K.count
         found = minimise_locally(K, *arguments, **options)
-        products += K.count - before
+        products += (K.count - before) * math.prod(K.shape)
         return found
 
     monkeypatch.setattr(equilibrium, "minimise_locally", counted)
-    companions = Companions(parse_case(COHESIVE), tmp_path, [2e-9])
-    work, own = companions.reference.work, products
-    other = companions.curve(coarser_contact(companions.case.variant(1).contact(tmp_path)))
-    assert other.work[0] < work[0] <= other.work[-1]
-    assert products - own < 0.66 * own
+    case = parse_case(COHESIVE)
+    state = solve(case.contact(tmp_path), 2e-9)
+    collide(state)
+    run = products
+    companions = Companions(case, tmp_path, [2e-9], [state.loading_work])
+    for contact in (companions.coarse, coarser_contact(case.variant(1).contact(tmp_path))):
+        before = products
+        other = companions.curve(contact)
+        assert other.work[0] < state.loading_work <= other.work[-1]
+        assert products - before < 0.4 * run
 
 
 def test_other_materials_may_need_finer_cells_than_a_companion_has(tmp_path):

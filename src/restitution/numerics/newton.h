@@ -145,6 +145,9 @@ inline double cube_root(double t) {
     return x;
 }
 
+// Nodes of a row that are far from contact are skipped, this number at a time.
+constexpr Index SOME = 16;
+
 inline void lennard_jones_chords(Rows<const double> base, Rows<const double> u, const Triple& known,
                                  const Pair& ends, const std::pair<double, double>& law,
                                  double least_way, Rows<double> out) {
@@ -156,20 +159,30 @@ inline void lennard_jones_chords(Rows<const double> base, Rows<const double> u, 
             const double *base_i = base[i], *u_i = u[i], *p_i = p[i], *s = slope[i], *k = stiffness[i],
                          *bound_i = bound[i], *per_stiff = softness[i];
             double* result = out[i];
+            for (Index from = 0; from < base.length; from += SOME) {
+                const Index to = std::min(from + SOME, base.length);
+                int near = 0;
+#pragma omp simd reduction(| : near)
+                for (Index j = from; j < to; ++j) near |= (p_i[j] > 0) | (base_i[j] + u_i[j] < z0);
+                if (!near) {
+                    std::copy(k + from, k + to, result + from);
+                    continue;
+                }
 #pragma omp simd
-            for (Index j = 0; j < base.length; ++j) {
-                // No branches: the compiler vectorises this loop only if all alternatives are computed.
-                const double gap = base_i[j] + u_i[j], pressure = p_i[j], most = bound_i[j];
-                const double wanted = pressure > 0 ? pressure : 0.0;
-                const double inside = wanted < most ? wanted : most;
-                const double beyond = (wanted - inside) * per_stiff[j];
-                const double goal = z0 * cube_root(repulsion_root(inside * scale)) - beyond;
-                const double way = gap - goal, away = std::abs(way);
-                const double far = away > least_way ? 1.0 : 0.0;
-                const double repels = pressure > 0 ? 1.0 : gap < z0 ? 1.0 : 0.0;
-                const double taken = far * repels * (pressure + s[j]) / (far > 0 ? way : 1.0);
-                const double tangent = k[j];
-                result[j] = taken > 0 ? taken : tangent;
+                for (Index j = from; j < to; ++j) {
+                    // No branches: the compiler vectorises this loop only if all alternatives are computed.
+                    const double gap = base_i[j] + u_i[j], pressure = p_i[j], most = bound_i[j];
+                    const double wanted = pressure > 0 ? pressure : 0.0;
+                    const double inside = wanted < most ? wanted : most;
+                    const double beyond = (wanted - inside) * per_stiff[j];
+                    const double goal = z0 * cube_root(repulsion_root(inside * scale)) - beyond;
+                    const double way = gap - goal, away = std::abs(way);
+                    const double far = away > least_way ? 1.0 : 0.0;
+                    const double repels = pressure > 0 ? 1.0 : gap < z0 ? 1.0 : 0.0;
+                    const double taken = far * repels * (pressure + s[j]) / (far > 0 ? way : 1.0);
+                    const double tangent = k[j];
+                    result[j] = taken > 0 ? taken : tangent;
+                }
             }
         }
         return Sums{};

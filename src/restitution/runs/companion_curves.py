@@ -17,7 +17,7 @@ from restitution.curve.work_curve import WorkCurve
 from restitution.errors import DomainError, RestitutionError
 
 _TOLERANCE = 0.005  # allowed error of COR due to the steps of adhesive unloading
-_RESIDUAL = 1e-6  # of solves on a loading path between other surfaces' works
+_RESIDUAL = 1e-5  # of solves on a loading path between other surfaces' works
 
 # A companion curve has two more depths than the run: the smallest depth times the first factor, and
 # the largest depth times the second factor. They are needed because other surfaces reach the same

@@ -4,7 +4,8 @@ All are computed on cells twice as large, in about a fifth of the time of the ru
 surface and the materials of the run, and is compared with the run; the others have another surface
 or other materials, and are compared with the first. COR is compared at equal impact velocity.
 
-Where each unloading follows a path, the others have up to three impacts; only these are compared.
+Where each unloading follows a path, the first has impacts near those of the run, and the others up
+to three; only these are compared.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import Self
 
 import numpy as np
 
@@ -28,6 +30,7 @@ from restitution.contact.models import COMPANION
 from restitution.contact.patch.law import PatchAttraction, PatchLaw, law_of_patches
 from restitution.curve.columns import Array
 from restitution.curve.follow import Impact
+from restitution.curve.point import Point
 from restitution.curve.work_curve import WorkCurve
 from restitution.errors import CaseError
 from restitution.numerics.intervals import half_interval
@@ -138,11 +141,21 @@ class ScaleCurves:
 
 @dataclass(frozen=True)
 class Companions:
-    """The companion curves of `case` at `depths` (m); its files are relative to `folder`."""
+    """The companion curves of `case`, whose impacts have these `depths` (m) and `works` (J).
+
+    Its files are relative to `folder`. Only contacts whose unloading follows a path need `works`.
+    """
 
     case: Case
     folder: Path
     depths: Sequence[float]
+    works: Sequence[float] = ()
+
+    @classmethod
+    def of(cls, case: Case, folder: Path, points: Sequence[Point]) -> Self:
+        """The companion curves of `case` with the impacts `points`."""
+        depths = sorted(point.indentation for point in points)
+        return cls(case, folder, depths, sorted(point.loading_work for point in points))
 
     @cached_property
     def coarse(self) -> Contact:
@@ -160,22 +173,21 @@ class Companions:
         return work_curve(self._compared) if self._follows_paths else self.own
 
     def weaker(self, factors: Array) -> WorkCurve:
-        """The curve of `coarse` with its yield limit times `factors`, one for each depth."""
+        """The curve of `coarse` with its yield limit times `factors`, one for each depth.
+
+        Where unloading follows a path, the limit is times the smallest factor at all depths.
+        """
         coarse = self.coarse
-        depths = self.depths
         if self._follows_paths:
-            depths = [impact.load.prescribed for impact in self._compared]
+            factors = factors.min(keepdims=True)
         lowered = [
-            replace(coarse, plasticity=coarse.plasticity.scaled(factor))
-            for factor, depth in zip(factors, self.depths, strict=True)
-            if depth in depths
+            replace(coarse, plasticity=coarse.plasticity.scaled(factor)) for factor in factors
         ]
-        if not lowered or all(contact == coarse for contact in lowered):
+        if all(contact == coarse for contact in lowered):
             return self.reference
-        loads = loads_at(lowered, depths)
         if self._follows_paths:
-            loads = loads[1:]  # at equal depths, weaker bodies do less work
-        return work_curve(impacts_of(loads, self.case.unloading.method))
+            return self.curve(lowered[0])
+        return work_curve(impacts_of(loads_at(lowered, self.depths), self.case.unloading.method))
 
     def others(self, progress: Say = ignore) -> list[WorkCurve]:
         """Curves of other surfaces of the same kind (other seeds or places of the scan)."""
@@ -300,8 +312,25 @@ class Companions:
 
     @cached_property
     def _own_impacts(self) -> list[Impact]:
+        if self._follows_paths:
+            return self._impacts_around(self.coarse, self._own_works)
         loads = loads_at([self.coarse] * len(self.depths), self.depths)
         return impacts_of(loads, self.case.unloading.method)
+
+    @property
+    def _own_works(self) -> list[float]:
+        """The works around which `own` has impacts: below the first, and beyond each of the others.
+
+        With the spread of densities, the mass of the bodies moves both ends.
+        """
+        works, mass = self._works, self.coarse.pair.mass
+        ratios = [m / mass for case in self._ends if mass and (m := case.pair().mass)]
+        low, high = min([1.0, *ratios]), max([1.0, *ratios])
+        return [low * works[0], *works[:-1], high * works[-1]] if works else []
+
+    @property
+    def _works(self) -> list[float]:
+        return sorted(work for work in self.works if work > 0)
 
     @property
     def _follows_paths(self) -> bool:
@@ -309,10 +338,16 @@ class Companions:
 
     @property
     def _compared(self) -> list[Impact]:
-        """The first impact of `_own_impacts` at `depths`, the last, and one in the middle."""
-        known = [impact for impact in self._own_impacts if impact.load.prescribed in self.depths]
-        at = np.linspace(0, len(known) - 1, min(_MOST_PATHS, len(known)))
-        return [known[round(k)] for k in at]
+        """The first impact of `_own_impacts`, and those near the works of other curves."""
+        works = self._own_works[1:]
+        near = _compared_works(works)[1:] or works
+        known = self._own_impacts
+        return known[:1] + [impact for impact in known[1:] if impact.load.prescribed in near]
+
+    def _impacts_around(self, contact: Contact, works: Sequence[float]) -> list[Impact]:
+        if not works:
+            return []
+        return impacts_of(loads_around(contact, works), self.case.unloading.method)
 
     @cached_property
     def _others(self) -> list[WorkCurve]:
@@ -333,12 +368,15 @@ class Companions:
         return coarser_contact(contact)
 
     def _curve(self, contact: Contact) -> WorkCurve:
-        method = self.case.unloading.method
         if self._follows_paths:
-            works = [impact.collision.loading_work for impact in self._compared]
-            works = [work for work in works if work > 0]
-            return work_curve(impacts_of(loads_around(contact, works), method) if works else ())
-        return curve_of(contact, self.depths, method)
+            return work_curve(self._impacts_around(contact, _compared_works(self._works)))
+        return curve_of(contact, self.depths, self.case.unloading.method)
+
+
+def _compared_works(works: Sequence[float]) -> list[float]:
+    """The first of the works, the last, and one in the middle."""
+    at = np.linspace(0, len(works) - 1, min(_MOST_PATHS, len(works)))
+    return [works[round(k)] for k in at]
 
 
 def coarser_contact(contact: Contact) -> Contact:

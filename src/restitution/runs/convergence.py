@@ -141,7 +141,7 @@ def _spread_of(
         return {}
     impacts = list(reached.values())
     waves = OmittedWaves.of(case.surface(folder))
-    companions = Companions(case, folder, sorted(point.indentation for point in impacts))
+    companions = Companions.of(case, folder, impacts)
     if scales := companions.scales(log.progress):
         unseen = error_of_law(scales, companions, impacts)
     else:

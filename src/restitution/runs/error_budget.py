@@ -235,10 +235,9 @@ class ErrorBudget:
             level = [k for k in reached if self.points[k].refine == factor]
             own = self._case.grid.factor == factor
             case = self._case if own else self._case.refined(factor)
-            depths = sorted(self.points[k].indentation for k in level)
-            companions = Companions(case, self._folder, depths)
-            on = surface if own else case.surface(self._folder)
             known = [self.points[k] for k in level]
+            companions = Companions.of(case, self._folder, known)
+            on = surface if own else case.surface(self._folder)
             for k, point in zip(level, self._with_errors(companions, on, known), strict=True):
                 self.points[k] = point
             self._companions[factor] = companions

@@ -36,7 +36,7 @@ def left_out(
         return None
     interface = case.interface.model_copy(update={"size_effect": length})
     harder = case.model_copy(update={"interface": interface})
-    companions = Companions(case, folder, [point.indentation for point in curve.points])
+    companions = Companions.of(case, folder, curve.points)
     coarse = companions.coarse
     work = np.array([point.loading_work for point in curve.points])
     off = companions.curve(coarse).at(work)
