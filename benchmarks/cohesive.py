@@ -69,7 +69,34 @@ CASES = {
 }
 # The first run of a process imports its libraries and is not timed.
 WARM = {**next(iter(CASES.values())), "nodes": 48, "depths": '[indentation]\nvalues = ["0.2 nm"]'}
-COLUMNS = ("force_N", "restitution", "restitution_error", "pull_off_force_N")
+# A contact that jumps, and the shares of the usual errors of its steps in a path for comparison.
+JUMPS = """
+total_error = false
+first = {{ material = "lactose", radius = "5 um" }}
+[interface]
+work_of_adhesion = "0.05 J/m^2"
+yield_pressure = "elastic"
+adhesion = "cohesive"
+[roughness]
+kind = "gaussian"
+rms = "0.15 nm"
+correlation_length = "50 nm"
+seed = {seed}
+[grid]
+nodes = 224
+spacing = "1 nm"
+[indentation]
+values = ["2 nm", "2.5 nm"]
+"""
+SEEDS, FINER = (1, 2), 0.05
+COLUMNS = (
+    "force_N",
+    "restitution",
+    "restitution_error",
+    "pull_off_force_N",
+    "loading_work_J",
+    "unloading_work_J",
+)
 REPORT = """\
 # Cohesive contacts
 
@@ -87,6 +114,16 @@ steps.
 | the total error | run, s | error, s | ratio |
 |---|---|---|---|
 {errors}
+
+## Losses by jumps
+
+Lactose spheres (R = 5 µm, Rq = 0.15 nm, elastic) jump into contact and out of it, on 224² nodes of
+1 nm. Both versions at depths of 2 and 2.5 nm, where the losses are equal; new, with {finer:g} of
+the usual errors of the steps.
+
+| surface | old, s | new, s | loss, old, aJ | loss, new, aJ | finer, aJ | new − finer |
+|---|---|---|---|---|---|---|
+{losses}
 {peer}"""
 PEER = """
 ## Beside Adhesion 0.93 with ContactMechanics 1.8.3
@@ -116,7 +153,8 @@ def measure(arguments: dict[str, object]) -> dict[str, object]:
     from restitution.runs.run import run_case
 
     def run(values: dict[str, object], total_error: bool) -> tuple[float, list[dict[str, str]]]:
-        text = SILICA.format(**values, total_error=str(total_error).lower())
+        text = JUMPS if values.keys() == {"seed"} else SILICA
+        text = text.format(**values, total_error=str(total_error).lower())
         case = parse_case(text)
         with tempfile.TemporaryDirectory() as folder:
             out = Path(folder) / "out"
@@ -131,7 +169,7 @@ def measure(arguments: dict[str, object]) -> dict[str, object]:
     seconds, rows = run(dict(arguments["case"]), total)  # type: ignore[call-overload]
     return {
         "seconds": seconds,
-        "columns": {name: [float(row[name]) for row in rows] for name in COLUMNS},
+        "columns": {name: [float(row[name] or "nan") for row in rows] for name in COLUMNS},
     }
 
 
@@ -173,6 +211,42 @@ def differences(old: dict, new: dict) -> str:
     force = largest("force_N", "force_N")
     pull = largest("pull_off_force_N", "pull_off_force_N")
     return f"{force:.0e} | {off:.0e} ({stated:.0e}) | {pull:.0e}"
+
+
+def losses(other: Path, seed: int) -> str:
+    """A row of the table of losses by jumps."""
+    old, new = (in_process(source, {"seed": seed}) for source in (other, HERE.parent / "src"))
+
+    def lost(run: dict) -> list[float]:
+        works = (run["columns"][f"{name}_work_J"] for name in ("loading", "unloading"))
+        return [1e18 * (a - b) for a, b in zip(*works, strict=True)]
+
+    finer = finer_loss(seed)
+    off = max(abs(one / finer - 1) for one in lost(new))
+    shown = (", ".join(f"{one:.3f}" for one in lost(run)) for run in (old, new))
+    columns = (
+        f"{old['seconds']:.1f}",
+        f"{new['seconds']:.1f}",
+        *shown,
+        f"{finer:.3f}",
+        f"{off:.1%}",
+    )
+    return f"| {seed} | {' | '.join(columns)} |"
+
+
+def finer_loss(seed: int) -> float:
+    """Loss (aJ) of an impact whose path is followed with shorter steps."""
+    from restitution.case.case_file import parse_case
+    from restitution.contact.cohesive.loading import load_cohesive
+    from restitution.contact.cohesive.steps import ACCURACY
+    from restitution.contact.models import RESTITUTION_ERROR
+    from restitution.contact.path import unloading_path
+
+    contact = parse_case(JUMPS.format(seed=seed)).contact(Path())
+    accuracy = FINER * ACCURACY
+    state = load_cohesive(contact, 2e-9, start=None, residual=1e-8, accuracy=accuracy)
+    *_, last = unloading_path(state, tolerance=FINER * RESTITUTION_ERROR)
+    return 1e18 * last.adhesive_loss
 
 
 def beside(python: str, nodes: int = 128, steps: int = 40) -> str:
@@ -289,6 +363,10 @@ def main() -> None:
         )
         errors.append(f"| {name} | {new:.2f} | {both - new:.2f} | {both / new - 1:.1f} |")
         print(errors[-1], flush=True)
+    lost = []
+    for seed in SEEDS:
+        lost.append(losses(given.other / "src", seed))
+        print(lost[-1], flush=True)
     peer = beside(given.peer) if given.peer else ""
     OUT.write_text(
         REPORT.format(
@@ -297,6 +375,8 @@ def main() -> None:
             repeats=given.repeats,
             rows="\n".join(rows),
             errors="\n".join(errors),
+            finer=FINER,
+            losses="\n".join(lost),
             peer=peer,
         )
     )

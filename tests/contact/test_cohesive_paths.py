@@ -17,6 +17,7 @@ from restitution.contact.cohesive.separation import separation_of
 from restitution.contact.cohesive.steps import follow
 from restitution.contact.contact import Contact
 from restitution.contact.loading import solve
+from restitution.contact.models import RESTITUTION_ERROR
 from restitution.contact.path import unloading_path
 from restitution.contact.plasticity.bound import ConstantBound
 from restitution.contact.plasticity.cavity import ExpandingCavity
@@ -209,3 +210,20 @@ def test_loading_with_a_larger_tolerance_takes_fewer_solves_and_comes_near():
     assert ends[1].convolutions < 0.6 * ends[0].convolutions
     assert ends[1].loading_work == approx(ends[0].loading_work, rel=0.03)
     assert ends[1].loading_work != ends[0].loading_work
+
+
+def test_losses_by_jumps_do_not_depend_on_the_accuracy_of_steps():
+    """With finer steps, errors of loose solves would count as jumps, and lose energy each time."""
+    body = Body(radius=5e-6, youngs_modulus=24.1e9, poissons_ratio=0.3, density=1540)
+    grid = Grid((224, 224), (1e-9, 1e-9))
+    surface = generate_surface(grid, kind="gaussian", rms=0.15e-9, correlation_length=50e-9, seed=1)
+    contact = Contact(Pair(body, body), surface, adhesion=Cohesive(0.05))
+    found = []
+    for share in (1.0, 0.1):
+        accuracy = share * cohesive_steps.ACCURACY
+        state = load_cohesive(contact, 1.3e-9, start=None, residual=1e-8, accuracy=accuracy)
+        path = list(unloading_path(state, tolerance=share * RESTITUTION_ERROR))
+        found.append((path[-1].jumps, path[-1].adhesive_loss))
+    (jumps, loss), (same, finer) = found
+    assert jumps == same == 2
+    assert 1e-20 < loss == approx(finer, rel=0.02)

@@ -113,7 +113,7 @@ def follow(
             rejected += state_on.convolutions
             state = state_on
         try:
-            loose = residual if last else max(residual, _tolerance(state, at))
+            loose = residual if last else max(residual, _tolerance(state, at, accuracy))
             step = _try(state, at, loose, known or guide, reach)
         except FarEquilibriumError as left_branch:
             rejected += left_branch.convolutions
@@ -164,10 +164,14 @@ def _next(state: CohesiveState, target: float, length: float) -> float:
     return state.indentation + math.copysign(min(length, 0.5 * left), target - state.indentation)
 
 
-def _tolerance(state: CohesiveState, at: float) -> float:
-    """Tolerance of a solve at the indentation `at` between the given depths."""
+def _tolerance(state: CohesiveState, at: float, accuracy: float) -> float:
+    """Tolerance of a solve at the indentation `at` between the given depths.
+
+    It falls with the accuracy of steps, or else errors of the forces would count as jumps.
+    """
     if state.force > 0:
-        return _BETWEEN if at > state.indentation else _BACK
+        usual = _BETWEEN if at > state.indentation else _BACK
+        return usual * min(1.0, accuracy / ACCURACY)
     z0 = law_of(state.contact).equilibrium_separation
     if state.smallest_gap > _NEAR * z0:  # the forces of bodies far apart are small
         return 0.0
