@@ -14,7 +14,8 @@ from restitution.curve.work_curve import WorkCurve
 from restitution.errors import CaseError
 from restitution.numerics.truncated_newton import minimise_locally
 from restitution.runs.companion_curves import curve_of
-from restitution.runs.companions import Companions, ScaleCurves, coarser_contact
+from restitution.runs.companions import Companions, coarser_contact
+from restitution.runs.scale_curves import ScaleCurves
 from restitution.surfaces.refine import coarsen
 from tolerance import approx
 
@@ -40,14 +41,15 @@ values = ["1 nm"]
 DEPTHS = (1e-9, 1.5e-9, 2e-9, 2.5e-9, 3e-9)
 
 
-def works_of(text, folder, depths):
-    """The curve of the run, between impacts that are beyond its depths."""
-    return curve_of(parse_case(text).contact(folder), depths, "path").work[-1 - len(depths) : -1]
+def works_of(folder, depths):
+    """Loading work (J) of the run at `depths` (m)."""
+    contact = parse_case(COHESIVE).contact(folder)
+    return np.array([solve(contact, depth).loading_work for depth in depths])
 
 
 def test_other_curves_of_a_cohesive_contact_are_compared_at_the_same_impacts(tmp_path):
     """Three impacts of five give the scatter, close to that with all of them."""
-    work = works_of(COHESIVE, tmp_path, DEPTHS)
+    work = works_of(tmp_path, DEPTHS)
     companions = Companions(parse_case(COHESIVE), tmp_path, DEPTHS, work)
     own = companions.own.work
     assert len(own) == 1 + len(work)
@@ -68,7 +70,7 @@ def test_other_curves_of_a_cohesive_contact_are_compared_at_the_same_impacts(tmp
 
 
 def test_bodies_that_are_weaker_by_the_smallest_factor_have_one_path(tmp_path):
-    work = works_of(COHESIVE, tmp_path, DEPTHS[:3])
+    work = works_of(tmp_path, DEPTHS[:3])
     companions = Companions(parse_case(COHESIVE), tmp_path, DEPTHS[:3], work)
     coarse = companions.coarse
     weak = replace(coarse, plasticity=coarse.plasticity.scaled(0.7))
@@ -79,7 +81,7 @@ def test_bodies_that_are_weaker_by_the_smallest_factor_have_one_path(tmp_path):
 
 def test_the_own_curve_covers_the_spread_of_the_density(tmp_path):
     """The density of silica moves the mass, and with it the work at equal velocity."""
-    work = works_of(COHESIVE, tmp_path, DEPTHS[:2])
+    work = works_of(tmp_path, DEPTHS[:2])
     companions = Companions(parse_case(COHESIVE), tmp_path, DEPTHS[:2], work)
     spread = companions.case.first.from_library()["density"]
     own = companions.own.work

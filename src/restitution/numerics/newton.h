@@ -146,7 +146,7 @@ inline double cube_root(double t) {
 }
 
 // Nodes of a row that are far from contact are skipped, this number at a time.
-constexpr Index SOME = 16;
+constexpr Index BLOCK = 16;
 
 inline void lennard_jones_chords(Rows<const double> base, Rows<const double> u, const Triple& known,
                                  const Pair& ends, const std::pair<double, double>& law,
@@ -159,8 +159,8 @@ inline void lennard_jones_chords(Rows<const double> base, Rows<const double> u, 
             const double *base_i = base[i], *u_i = u[i], *p_i = p[i], *s = slope[i], *k = stiffness[i],
                          *bound_i = bound[i], *per_stiff = softness[i];
             double* result = out[i];
-            for (Index from = 0; from < base.length; from += SOME) {
-                const Index to = std::min(from + SOME, base.length);
+            for (Index from = 0; from < base.length; from += BLOCK) {
+                const Index to = std::min(from + BLOCK, base.length);
                 int near = 0;
 #pragma omp simd reduction(| : near)
                 for (Index j = from; j < to; ++j) near |= (p_i[j] > 0) | (base_i[j] + u_i[j] < z0);

@@ -11,7 +11,7 @@ to three; only these are compared.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -33,7 +33,6 @@ from restitution.curve.follow import Impact
 from restitution.curve.point import Point
 from restitution.curve.work_curve import WorkCurve
 from restitution.errors import CaseError
-from restitution.numerics.intervals import half_interval
 from restitution.runs.companion_curves import (
     curve_of,
     impacts_of,
@@ -42,6 +41,7 @@ from restitution.runs.companion_curves import (
     work_curve,
 )
 from restitution.runs.log import Say, ignore
+from restitution.runs.scale_curves import ScaleCurves
 from restitution.surfaces.refine import coarsen
 
 ENDS = ("low", "high")  # of the spread of a library value
@@ -52,91 +52,6 @@ _DEVIATIONS = 2.0  # of a joined spectrum of scans
 
 # Error of a bound that grows if patches have one of their own, beside that of a fine grid.
 _OF_GROWTH = 0.06
-# Scatter between patches of a run, divided by that between its companion's, whose waves are twice
-# as long in patches as large.
-_OF_SHORTER = 0.5
-# Error of the change of COR by the patches, as a fraction of this change, where the radius of the
-# real contact area is the wavelength of the split; and the largest ratio of wavelength to radius.
-_OF_CHANGE, _LARGEST_RATIO = 0.2, 10.0
-# The same fraction at any radius if the bound grows. Both were chosen on the 76 cases of
-# evidence/two_scales/parts.csv.
-_OF_GROWING_CHANGE = 0.25
-
-
-@dataclass(frozen=True)
-class ScaleCurves:
-    """Curves that show the errors of a law of patches.
-
-    `single` has the curve of the law of each patch, `weaker` that of weaker bodies if their bound
-    grows, and `without` that without the waves of the patches if the bodies do not attract each
-    other. `wavelength` is that of the split of the run, and `edge` that of a patch (m); `edge` is 0
-    if asperities have their places in the contact, so that other surfaces show the scatter of such
-    a sample.
-    """
-
-    own: WorkCurve
-    single: tuple[WorkCurve, ...]
-    weaker: WorkCurve | None
-    without: WorkCurve | None
-    edge: float
-    wavelength: float
-
-    @classmethod
-    def of(
-        cls, companions: Companions, law: PatchLaw, how: Splitting, progress: Say
-    ) -> ScaleCurves:
-        single, coarse, weaker, without = [], companions.coarse, None, None
-        for number, patch in enumerate(law.patches, 1):
-            progress(f"error: patch {number} of {len(law.patches)}")
-            alone = replace(law, patches=(patch,))
-            single.append(companions.curve(replace(coarse, adhesion=alone)))
-        if coarse.plasticity.grows:
-            weak = replace(coarse, plasticity=coarse.plasticity.scaled(1 - _OF_GROWTH))
-            weaker = companions.curve(weak)
-        if not law.attracts:
-            without = companions.curve(replace(coarse, adhesion=None))
-        edge = 0.0 if isinstance(law, PatchAttraction) else how.nodes * how.cell
-        return cls(companions.reference, tuple(single), weaker, without, edge, how.wavelength)
-
-    def error(self, quantity_of: Callable[[WorkCurve], Array], area: Array | float) -> Array:
-        """Error of a quantity due to the scatter of patches, and to a bound that grows.
-
-        The waves in the contact are one sample as large as its nominal `area` (m²).
-        """
-        own = quantity_of(self.own)
-        growth = 0 * own
-        if self.weaker is not None:
-            growth = np.abs(quantity_of(self.weaker) - own)
-        if len(self.single) < 2:
-            return np.asarray(growth)
-        deviation = np.std([quantity_of(curve) for curve in self.single], axis=0, ddof=1)
-        sample = np.sqrt(self.edge**2 / np.maximum(area, 1e-300))
-        # Laws with attraction have not been compared.
-        share = 1.0 if self.without is None else _OF_SHORTER
-        scatter = share * deviation * np.hypot(half_interval(len(self.single)), sample)
-        return np.asarray(np.hypot(scatter, growth))
-
-    def split_ratio(self, area: Array) -> Array:
-        """Wavelength of the split divided by the radius of the real `area` (m²).
-
-        Errors between bodies without attraction grow with it; 1 if they attract each other.
-        """
-        if self.without is None:
-            return np.ones(area.size)
-        ratio = self.wavelength / np.sqrt(np.maximum(area, 1e-300) / math.pi)
-        return np.asarray(np.minimum(ratio, _LARGEST_RATIO))
-
-    def separation_error(self, work: Array, area: Array) -> Array:
-        """Error of COR at `work` (J) as a fraction of its change by the patches.
-
-        Waves are not short beside the real `area` (m²), and a bound that grows is approximate.
-        """
-        if self.without is None:
-            return np.zeros(work.size)
-        fraction = _OF_CHANGE * self.split_ratio(area)
-        if self.weaker is not None:
-            fraction = np.hypot(fraction, _OF_GROWING_CHANGE)
-        return np.asarray(fraction * np.abs(self.own.at(work) - self.without.at(work)))
 
 
 @dataclass(frozen=True)
@@ -155,7 +70,7 @@ class Companions:
     def of(cls, case: Case, folder: Path, points: Sequence[Point]) -> Self:
         """The companion curves of `case` with the impacts `points`."""
         depths = sorted(point.indentation for point in points)
-        return cls(case, folder, depths, sorted(point.loading_work for point in points))
+        return cls(case, folder, depths, [point.loading_work for point in points])
 
     @cached_property
     def coarse(self) -> Contact:
@@ -212,8 +127,22 @@ class Companions:
             law, how = law_of_patches(self.coarse), self.case.splitting(self.folder)
             if law is None or how is None:
                 return None
-            self._scales.append(ScaleCurves.of(self, law, how, progress))
+            self._scales.append(self._scale_curves(law, how, progress))
         return self._scales[0]
+
+    def _scale_curves(self, law: PatchLaw, how: Splitting, progress: Say) -> ScaleCurves:
+        single, coarse, weaker, without = [], self.coarse, None, None
+        for number, patch in enumerate(law.patches, 1):
+            progress(f"error: patch {number} of {len(law.patches)}")
+            alone = replace(law, patches=(patch,))
+            single.append(self.curve(replace(coarse, adhesion=alone)))
+        if coarse.plasticity.grows:
+            weak = replace(coarse, plasticity=coarse.plasticity.scaled(1 - _OF_GROWTH))
+            weaker = self.curve(weak)
+        if not law.attracts:
+            without = self.curve(replace(coarse, adhesion=None))
+        edge = 0.0 if isinstance(law, PatchAttraction) else how.nodes * how.cell
+        return ScaleCurves(self.reference, tuple(single), weaker, without, edge, how.wavelength)
 
     @property
     def cell_area(self) -> float:

@@ -22,11 +22,12 @@ from restitution.curve.point import Point
 from restitution.display import counted
 from restitution.numerics.intervals import half_interval
 from restitution.runs.attraction import with_pull_off_errors
-from restitution.runs.companions import SURFACES, Companions, ScaleCurves
+from restitution.runs.companions import SURFACES, Companions
 from restitution.runs.log import Say, ignore
 from restitution.runs.loss_errors import with_sticking
 from restitution.runs.material_advice import MaterialPart, advice, as_rows
 from restitution.runs.material_parts import material_parts
+from restitution.runs.scale_curves import ScaleCurves
 from restitution.surfaces import Surface, rms_slope
 from restitution.surfaces.refine import coarsen
 
