@@ -22,9 +22,9 @@ from unit import machine, today
 
 HERE = Path(__file__).resolve().parent
 OUT = Path(__file__).with_suffix(".md")
-SILICA = """
+TEXT = """
 total_error = {total_error}
-first = {{ material = "silica", radius = "5 um" }}
+first = {{ material = "{material}", radius = "5 um" }}
 [interface]
 work_of_adhesion = "0.05 J/m^2"
 yield_pressure = "{hardness}"
@@ -35,7 +35,7 @@ rms = "{rms}"
 seed = {seed}
 [grid]
 nodes = {nodes}
-spacing = "2.6 nm"
+spacing = "{spacing}"
 {depths}
 """
 SHORT = 'kind = "gaussian"\ncorrelation_length = "{} nm"'
@@ -69,26 +69,21 @@ CASES = {
 }
 # The first run of a process imports its libraries and is not timed.
 WARM = {**next(iter(CASES.values())), "nodes": 48, "depths": '[indentation]\nvalues = ["0.2 nm"]'}
-# A contact that jumps, and the shares of the usual errors of its steps in a path for comparison.
-JUMPS = """
-total_error = false
-first = {{ material = "lactose", radius = "5 um" }}
-[interface]
-work_of_adhesion = "0.05 J/m^2"
-yield_pressure = "elastic"
-adhesion = "cohesive"
-[roughness]
-kind = "gaussian"
-rms = "0.15 nm"
-correlation_length = "50 nm"
-seed = {seed}
-[grid]
-nodes = 224
-spacing = "1 nm"
-[indentation]
-values = ["2 nm", "2.5 nm"]
-"""
-SEEDS, FINER = (1, 2), 0.05
+# Contacts that jump, and the errors of the steps of a path for comparison, as a share of the usual.
+JUMPS = {
+    f"seed {seed}": {
+        "material": "lactose",
+        "hardness": "elastic",
+        "rms": "0.15 nm",
+        "waves": SHORT.format(50),
+        "seed": seed,
+        "nodes": 224,
+        "spacing": "1 nm",
+        "depths": '[indentation]\nvalues = ["2 nm", "2.5 nm"]',
+    }
+    for seed in (1, 2)
+}
+FINER = 0.05
 COLUMNS = (
     "force_N",
     "restitution",
@@ -143,6 +138,11 @@ Largest difference of the energies where it converged, by the largest energy: {d
 LOOSE = 1e-3
 
 
+def text_of(values: dict[str, object], total_error: bool = False) -> str:
+    silica = {"material": "silica", "spacing": "2.6 nm"}
+    return TEXT.format(**silica | values, total_error=str(total_error).lower())
+
+
 def measure(arguments: dict[str, object]) -> dict[str, object]:
     """CPU time (s) and columns of a case, in this process."""
     import csv
@@ -153,8 +153,7 @@ def measure(arguments: dict[str, object]) -> dict[str, object]:
     from restitution.runs.run import run_case
 
     def run(values: dict[str, object], total_error: bool) -> tuple[float, list[dict[str, str]]]:
-        text = JUMPS if values.keys() == {"seed"} else SILICA
-        text = text.format(**values, total_error=str(total_error).lower())
+        text = text_of(values, total_error)
         case = parse_case(text)
         with tempfile.TemporaryDirectory() as folder:
             out = Path(folder) / "out"
@@ -169,7 +168,7 @@ def measure(arguments: dict[str, object]) -> dict[str, object]:
     seconds, rows = run(dict(arguments["case"]), total)  # type: ignore[call-overload]
     return {
         "seconds": seconds,
-        "columns": {name: [float(row[name] or "nan") for row in rows] for name in COLUMNS},
+        "columns": {name: [float(row[name]) for row in rows] for name in COLUMNS},
     }
 
 
@@ -213,15 +212,15 @@ def differences(old: dict, new: dict) -> str:
     return f"{force:.0e} | {off:.0e} ({stated:.0e}) | {pull:.0e}"
 
 
-def losses(other: Path, seed: int) -> str:
+def losses(other: Path, name: str) -> str:
     """A row of the table of losses by jumps."""
-    old, new = (in_process(source, {"seed": seed}) for source in (other, HERE.parent / "src"))
+    old, new = (in_process(source, JUMPS[name]) for source in (other, HERE.parent / "src"))
 
     def lost(run: dict) -> list[float]:
         works = (run["columns"][f"{name}_work_J"] for name in ("loading", "unloading"))
         return [1e18 * (a - b) for a, b in zip(*works, strict=True)]
 
-    finer = finer_loss(seed)
+    finer = finer_loss(name)
     off = max(abs(one / finer - 1) for one in lost(new))
     shown = (", ".join(f"{one:.3f}" for one in lost(run)) for run in (old, new))
     columns = (
@@ -231,10 +230,10 @@ def losses(other: Path, seed: int) -> str:
         f"{finer:.3f}",
         f"{off:.1%}",
     )
-    return f"| {seed} | {' | '.join(columns)} |"
+    return f"| {name} | {' | '.join(columns)} |"
 
 
-def finer_loss(seed: int) -> float:
+def finer_loss(name: str) -> float:
     """Loss (aJ) of an impact whose path is followed with shorter steps."""
     from restitution.case.case_file import parse_case
     from restitution.contact.cohesive.loading import load_cohesive
@@ -242,7 +241,7 @@ def finer_loss(seed: int) -> float:
     from restitution.contact.models import RESTITUTION_ERROR
     from restitution.contact.path import unloading_path
 
-    contact = parse_case(JUMPS.format(seed=seed)).contact(Path())
+    contact = parse_case(text_of(JUMPS[name])).contact(Path())
     accuracy = FINER * ACCURACY
     state = load_cohesive(contact, 2e-9, start=None, residual=1e-8, accuracy=accuracy)
     *_, last = unloading_path(state, tolerance=FINER * RESTITUTION_ERROR)
@@ -364,8 +363,8 @@ def main() -> None:
         errors.append(f"| {name} | {new:.2f} | {both - new:.2f} | {both / new - 1:.1f} |")
         print(errors[-1], flush=True)
     lost = []
-    for seed in SEEDS:
-        lost.append(losses(given.other / "src", seed))
+    for name in JUMPS:
+        lost.append(losses(given.other / "src", name))
         print(lost[-1], flush=True)
     peer = beside(given.peer) if given.peer else ""
     OUT.write_text(
