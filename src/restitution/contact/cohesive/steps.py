@@ -37,6 +37,7 @@ ACCURACY = 5e-4
 # Tolerances of the solves of loading between the given depths, whose errors can become plastic
 # displacement, and of unloading under pressure.
 _BETWEEN, _BACK = 1e-5, 1e-4
+_ACCURACY_BACK = 0.5 * ACCURACY  # usual accuracy of unloading
 # Under tension, at most this fraction of the length of a step in units of z₀, because short steps
 # are those before a jump, and less where the largest displacement is below z₀.
 _OF_STEP = 2e-5
@@ -170,8 +171,9 @@ def _tolerance(state: CohesiveState, at: float, accuracy: float) -> float:
     It falls with the accuracy of steps, or else errors of the forces would count as jumps.
     """
     if state.force > 0:
-        usual = _BETWEEN if at > state.indentation else _BACK
-        return usual * min(1.0, accuracy / ACCURACY)
+        if at > state.indentation:
+            return _BETWEEN * min(1.0, accuracy / ACCURACY)
+        return _BACK * min(1.0, accuracy / _ACCURACY_BACK)
     z0 = law_of(state.contact).equilibrium_separation
     if state.smallest_gap > _NEAR * z0:  # the forces of bodies far apart are small
         return 0.0
