@@ -8,13 +8,13 @@ from numpy.testing import assert_allclose
 
 from compiled_loops import both, seeds, shapes
 from restitution.numerics.expressions import (
-    add_curvature,
-    advance,
+    add_and_compare,
     continued_lennard_jones,
-    largest_ratio,
+    descend,
+    ends_above,
     lennard_jones,
     lennard_jones_chords,
-    redirect,
+    lennard_jones_totals,
 )
 from restitution.numerics.node_tables import tabulated_potential
 from tolerance import approx
@@ -27,20 +27,59 @@ pytest.importorskip("restitution.numerics.loops", reason="built without a compil
 @given(shapes, seeds)
 def test_newton_steps_are_those_of_the_expressions(single, shape, seed):
     rng, near = np.random.default_rng(seed), {np.float32: 2e-6, np.float64: 1e-13}[single]
-    x, Sx, rest, d, Sd, k, z = (rng.normal(size=shape).astype(single) for _ in range(7))
-    (sum_, (*_, Hd)), (its_sum, (*_, its_Hd)) = both(add_curvature, d, Sd, k, np.empty_like(d))
-    assert_allclose(its_Hd, Hd, atol=near)
-    assert its_sum == approx(sum_, abs=near * d.size)
-    moved, its_moved = (outcome[1] for outcome in both(advance, x, Sx, rest, d, Sd, Hd, 0.7))
-    turned, its_turned = (outcome[1] for outcome in both(redirect, d, Sd, z, rest, 0.3))
-    for expected, compiled in zip(
-        (*moved[:3], *turned[:2]), (*its_moved[:3], *its_turned[:2]), strict=True
-    ):
-        assert_allclose(compiled, expected, atol=near)
-    ratio, its_ratio = (outcome[0] for outcome in both(largest_ratio, x, k, 0.5))
+    p, slope, k = (rng.normal(size=shape).astype(single) for _ in range(3))
+    outcomes = both(add_and_compare, p, slope, k, 0.5, np.empty_like(p))
+    (ratio, (*_, sums)), (its_ratio, (*_, its_sums)) = outcomes
     assert its_ratio == approx(ratio, rel=near)
-    x[0, 0] = np.nan
-    assert all(np.isnan(outcome[0]) for outcome in both(largest_ratio, x, k, 0.5))
+    assert_allclose(its_sums, sums, atol=near)
+    for least in (0.5, 2.0, 9.0):
+        ends, its_ends = (outcome[0] for outcome in both(ends_above, k, least))
+        assert its_ends == ends
+    p[0, 0] = np.nan
+    assert all(
+        np.isnan(outcome[0]) for outcome in both(add_and_compare, p, slope, k, 0.5, sums.copy())
+    )
+
+
+def descended(function, matrix, b, k, limits, zero_mean):
+    """Results of `descend` with K = `matrix`: its ends, x, S x and the residual."""
+    single, shape = b.dtype, b.shape
+    rest, (x, Sx, z, Hd) = b.copy(), np.zeros((4, *shape), single)
+
+    def product():
+        z[...] = (matrix @ rest.ravel()).reshape(shape)
+
+    d = (matrix @ rest.ravel()).reshape(shape).astype(single)
+    ended = function(rest, d, (x, Sx, rest.copy(), z, Hd), k, product, limits, zero_mean)
+    return ended, x, Sx, rest
+
+
+@settings(deadline=None, max_examples=40)
+@given(shapes, seeds, st.sampled_from([np.inf, 0.5, 50.0]), st.booleans(), st.floats(-1.5, 3))
+def test_the_descent_is_that_of_the_expression(shape, seed, radius, zero_mean, softest):
+    rng, n = np.random.default_rng(seed), shape[0] * shape[1]
+    root = rng.normal(size=(n, n)) / np.sqrt(n)
+    b, k = rng.normal(size=shape), rng.uniform(min(softest, 1.0), 4, shape)
+    given = root @ root.T + 0.1 * np.eye(n), b, k, (1e-9, radius, 0.3, 6), zero_mean
+    ended, *expected = descended(descend.__wrapped__, *given)
+    its_ended, *compiled = descended(descend, *given)
+    assert its_ended == ended
+    for one, other in zip(expected, compiled, strict=True):
+        assert_allclose(other, one, rtol=1e-6, atol=1e-9 * np.abs(given[1]).max())
+
+
+@settings(deadline=None, max_examples=25)
+@given(shapes, seeds)
+def test_the_descent_solves_the_system(shape, seed):
+    rng, n = np.random.default_rng(seed), shape[0] * shape[1]
+    root = rng.normal(size=(n, n)) / np.sqrt(n)
+    matrix, b, k = root @ root.T + 0.1 * np.eye(n), rng.normal(size=shape), rng.uniform(0, 4, shape)
+    for function in (descend, descend.__wrapped__):
+        ended, x, Sx, _ = descended(function, matrix, b, k, (1e-22, np.inf, 1.0, 10 * n), False)
+        assert ended == (False, False)
+        exact = np.linalg.solve(np.linalg.inv(matrix) + np.diag(k.ravel()), b.ravel())
+        assert x.ravel() == approx(exact, abs=1e-7 * np.abs(exact).max())
+        assert (matrix @ Sx.ravel()) == approx(exact, abs=1e-7 * np.abs(exact).max())
 
 
 @settings(deadline=None, max_examples=25)
@@ -51,6 +90,10 @@ def test_the_lennard_jones_law_is_that_of_the_expression(shape, seed):
     (_, expected), (_, compiled) = both(lennard_jones, gap, 0.05, 3e-10, *empty)
     for one, other in zip(expected[3:], compiled[3:], strict=True):
         assert_allclose(other, one, rtol=1e-12, atol=1e-14 * np.abs(one).max())
+    totals, its_totals = (
+        outcome[0] for outcome in both(lennard_jones_totals, gap, -1e-10, 3.6e-10, (0.05, 3e-10))
+    )
+    assert its_totals == approx(totals, rel=1e-11)
 
 
 @settings(deadline=None, max_examples=25)

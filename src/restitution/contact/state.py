@@ -102,7 +102,7 @@ class State:
         """Whether each node of `box` is in contact (bool), that is, its pressure is not 0."""
         return np.asarray(self.box_pressure != 0)
 
-    @property
+    @cached_property
     def contact_nodes(self) -> int:
         """Number of nodes in contact."""
         return int(np.count_nonzero(self.box_touching))

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.numerics.box import NOWHERE, bounding_box
 from restitution.numerics.kernels import use_loop
 
 Array = NDArray[Any]  # double or single precision
@@ -28,34 +30,74 @@ def dot(a: Array, b: Array) -> float:
 
 
 @use_loop
-def add_curvature(d: Array, Sd: Array, k: Array, out: Array) -> float:
-    """Write Sd + k d into `out`; return Σ d `out`."""
-    np.multiply(k, d, out=out)
-    out += Sd
-    return dot(d, out)
+def descend(
+    rest: Array,
+    d: Array,
+    work: tuple[Array, Array, Array, Array, Array],
+    k: Array,
+    product: Callable[[], object],
+    limits: tuple[float, float, float, int],
+    zero_mean: bool,
+) -> tuple[bool, bool]:
+    """Solve (K⁻¹ + k) x = b by conjugate gradients with K as preconditioner (Steihaug 1983).
+
+    `rest` is b and becomes the residual; `d` is K b. `work` are x and S x, with S = K⁻¹, both 0 and
+    overwritten, S d = b, and two more arrays: `product` writes K `rest` to the first. `limits` are
+    the bᵀK b to reach, the radius of the trust region in the norm (xᵀS x)^½, infinite if there is
+    none, the largest change along a direction of negative curvature in that case, and the number of
+    iterations. With `zero_mean`, K ignores means. Return whether a limit ended the search, and
+    whether a direction had negative curvature.
+    """
+    x, Sx, Sd, z, Hd = work
+    enough, radius, length, most = limits
+    inside = math.isinf(radius)  # no trust region yet
+    xSd = xSx = dSd = 0.0
+    rz = dot(rest, d)
+    for _ in range(most):
+        np.multiply(k, d, out=Hd)
+        Hd += Sd
+        dHd = dot(d, Hd)
+        if not inside:
+            dSd, xSd = dot(d, Sd), dot(x, Sd)
+        bent = dHd <= 0
+        a = math.inf if bent else rz / dHd
+        along = 0.0 if bent or inside else xSx + a * (2 * xSd + a * dSd)
+        at_edge = bent or along >= radius * radius
+        if at_edge and inside:
+            a = length / max_magnitude(d)
+        elif at_edge:
+            a = (math.sqrt(max(xSd * xSd + dSd * (radius**2 - xSx), 0.0)) - xSd) / dSd
+        xSx = along
+        x += a * d
+        Sx += a * Sd
+        rest -= a * Hd
+        if at_edge:
+            return True, bent
+        if zero_mean:  # means would only increase rounding errors
+            rest -= rest.mean()
+        product()
+        before, rz = rz, dot(rest, z)
+        if rz <= enough:
+            break
+        d *= rz / before
+        d += z
+        Sd *= rz / before
+        Sd += rest
+    return False, False
 
 
 @use_loop
-def advance(x: Array, Sx: Array, rest: Array, d: Array, Sd: Array, Hd: Array, a: float) -> None:
-    """Add a d to x, a Sd to Sx, and −a Hd to the residual `rest`."""
-    x += a * d
-    Sx += a * Sd
-    rest -= a * Hd
+def add_and_compare(p: Array, slope: Array, k: Array, least: float, out: Array) -> float:
+    """Write p + slope to `out`; return its largest |p + slope|/(|k| + least), NaN for any NaN."""
+    np.add(p, slope, out=out)
+    return float(np.max(np.abs(out) / (np.abs(k) + least)))
 
 
 @use_loop
-def redirect(d: Array, Sd: Array, z: Array, rest: Array, b: float) -> None:
-    """Replace d by b d + z, and Sd by b Sd + `rest`."""
-    d *= b
-    d += z
-    Sd *= b
-    Sd += rest
-
-
-@use_loop
-def largest_ratio(r: Array, k: Array, least: float) -> float:
-    """Largest |r|/(|k| + least); NaN if a value is NaN."""
-    return float(np.max(np.abs(r) / (np.abs(k) + least)))
+def ends_above(values: Array, least: float) -> tuple[int, int, int, int]:
+    """Ends of the rows and columns with a magnitude above `least`, as of two slices; 0 if none."""
+    box = bounding_box(np.abs(values) > least) or NOWHERE
+    return box[0].start, box[0].stop, box[1].start, box[1].stop
 
 
 @use_loop
@@ -70,6 +112,19 @@ def lennard_jones(
     energy[...] = (-w / 3) * x2 * (4 - x6)
     slope[...] = (8 * w / (3 * z0)) * (x2 * x) * (1 - x6)
     stiffness[...] = (8 * w / z0**2) * x4 * (3 * x6 - 1)
+
+
+@use_loop
+def lennard_jones_totals(
+    gap: Array, shift: float, least: float, law: tuple[float, float]
+) -> tuple[float, float]:
+    """Sums of the energy and the slope of `lennard_jones` at the gap + `shift`, at least `least`.
+
+    `law` is (w, z₀).
+    """
+    energy, slope, unused = (np.empty(gap.shape) for _ in range(3))
+    lennard_jones(np.maximum(gap + shift, least), *law, energy, slope, unused)
+    return float(energy.sum()), float(slope.sum())
 
 
 @use_loop

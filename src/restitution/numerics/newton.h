@@ -57,21 +57,91 @@ void redirect(Rows<T> d, Rows<T> Sd, Rows<const T> z, Rows<const T> rest, double
 }
 
 template <class T>
-double largest_ratio(Rows<const T> r, Rows<const T> k, double least) {
+void subtract_mean(Rows<T> values) {
+    double sum = 0;
+    for (Index i = 0; i < values.count; ++i) sum = std::accumulate(values[i], values[i] + values.length, sum);
+    const T mean = T(sum / double(values.count * values.length));
+    for (Index i = 0; i < values.count; ++i)
+        for (Index j = 0; j < values.length; ++j) values[i][j] -= mean;
+}
+
+// x, S x, S d, z and H d.
+template <class T>
+using Descent = std::tuple<Rows<T>, Rows<T>, Rows<T>, Rows<T>, Rows<T>>;
+
+template <class T>
+std::pair<bool, bool> descend(Rows<T> rest, Rows<T> d, const Descent<T>& work, Rows<const T> k,
+                              const py::function& product,
+                              const std::tuple<double, double, double, int>& limits, bool zero_mean) {
+    const auto [x, Sx, Sd, z, Hd] = work;
+    const auto [enough, radius, length, most] = limits;
+    expect_one_shape(rest, d, x, Sx, Sd, z, Hd, k);
+    const auto as_input = [](const Rows<T>& of) { return Rows<const T>{of.first, of.count, of.length, of.stride}; };
+    const Rows<const T> in_rest = as_input(rest), in_d = as_input(d), in_x = as_input(x), in_Sd = as_input(Sd);
+    const Rows<const T> in_z = as_input(z), in_Hd = as_input(Hd);
+    const bool inside = std::isinf(radius);
+    double xSd = 0, xSx = 0, dSd = 0, rz = dot(in_rest, in_d);
+    for (int i = 0; i < most; ++i) {
+        const double dHd = add_curvature(in_d, in_Sd, k, Hd);
+        if (!inside) dSd = dot(in_d, in_Sd), xSd = dot(in_x, in_Sd);
+        const bool bent = dHd <= 0;
+        double a = bent ? 0 : rz / dHd;
+        const double along = bent || inside ? 0 : xSx + a * (2 * xSd + a * dSd);
+        const bool at_edge = bent || along >= radius * radius;
+        if (at_edge && inside)
+            a = length / max_magnitude(in_d);
+        else if (at_edge)
+            a = (std::sqrt(std::max(xSd * xSd + dSd * (radius * radius - xSx), 0.0)) - xSd) / dSd;
+        xSx = along;
+        advance(x, Sx, rest, in_d, in_Sd, in_Hd, a);
+        if (at_edge) return {true, bent};
+        if (zero_mean) subtract_mean(rest);
+        product();
+        const double before = rz;
+        rz = dot(in_rest, in_z);
+        if (rz <= enough) break;
+        redirect(d, Sd, in_z, in_rest, rz / before);
+    }
+    return {false, false};
+}
+
+template <class T>
+double add_and_compare(Rows<const T> p, Rows<const T> slope, Rows<const T> k, double least, Rows<T> out) {
     const auto some = [&](Index begin, Index end) {
         T most = 0, doubt = 0;
         for (Index i = begin; i < end; ++i) {
-            const T *ri = r[i], *ki = k[i];
+            const T *pi = p[i], *si = slope[i], *ki = k[i];
+            T* sum = out[i];
 #pragma omp simd reduction(max : most) reduction(+ : doubt)
-            for (Index j = 0; j < r.length; ++j) {
-                const T ratio = std::abs(ri[j]) / (std::abs(ki[j]) + T(least));
+            for (Index j = 0; j < p.length; ++j) {
+                sum[j] = pi[j] + si[j];
+                const T ratio = std::abs(sum[j]) / (std::abs(ki[j]) + T(least));
                 most = std::max(most, ratio);
                 doubt += 0 * ratio;
             }
         }
         return Peak<T>{most, doubt};
     };
-    return over_rows(some, r, k).value();
+    return over_rows(some, p, slope, k, out).value();
+}
+
+template <class T>
+std::tuple<Index, Index, Index, Index> ends_above(Rows<const T> values, double least) {
+    Index top = values.count, bottom = 0, left = values.length, right = 0;
+    const auto above = [&](T value) { return std::abs(value) > T(least); };
+    for (Index i = 0; i < values.count; ++i) {
+        const T* row = values[i];
+        int any = 0;
+#pragma omp simd reduction(| : any)
+        for (Index j = 0; j < values.length; ++j) any |= above(row[j]);
+        if (!any) continue;
+        top = std::min(top, i), bottom = i + 1;
+        left = std::find_if(row, row + left, above) - row;
+        for (Index j = values.length; j > right; --j)
+            if (above(row[j - 1])) right = j;
+    }
+    if (bottom == 0) return {0, 0, 0, 0};
+    return {top, bottom, left, right};
 }
 
 inline void lennard_jones(Rows<const double> gap, double w, double z0, Rows<double> energy,
@@ -92,6 +162,26 @@ inline void lennard_jones(Rows<const double> gap, double w, double z0, Rows<doub
         return Sums{};
     };
     over_rows(some, gap, energy, slope, stiffness);
+}
+
+inline std::pair<double, double> lennard_jones_totals(Rows<const double> gap, double shift, double least,
+                                                      const std::pair<double, double>& law) {
+    const double w = law.first, z0 = law.second, a = w / 3, b = 8 * w / (3 * z0);
+    const auto some = [&](Index begin, Index end) {
+        double energy = 0, slope = 0;
+        for (Index i = begin; i < end; ++i) {
+            const double* g = gap[i];
+#pragma omp simd reduction(+ : energy, slope)
+            for (Index j = 0; j < gap.length; ++j) {
+                const double x = z0 / std::max(g[j] + shift, least), x2 = x * x, x6 = x2 * x2 * x2;
+                energy -= a * x2 * (4 - x6);
+                slope += b * (x2 * x) * (1 - x6);
+            }
+        }
+        return Sums{energy, slope};
+    };
+    const Sums sums = over_rows(some, gap);
+    return {sums.first, sums.second};
 }
 
 using Triple = std::tuple<Rows<const double>, Rows<const double>, Rows<const double>>;
@@ -192,14 +282,14 @@ inline void lennard_jones_chords(Rows<const double> base, Rows<const double> u, 
 
 template <class T>
 void define_newton(py::module_& module) {
-    module.def("add_curvature", &add_curvature<T>);
-    module.def("advance", &advance<T>);
-    module.def("redirect", &redirect<T>);
-    module.def("largest_ratio", &largest_ratio<T>);
+    module.def("descend", &descend<T>);
+    module.def("add_and_compare", &add_and_compare<T>);
+    module.def("ends_above", &ends_above<T>);
 }
 
 inline void define_lennard_jones(py::module_& module) {
     module.def("lennard_jones", &lennard_jones);
+    module.def("lennard_jones_totals", &lennard_jones_totals);
     module.def("continued_lennard_jones", &continued_lennard_jones);
     module.def("lennard_jones_chords", &lennard_jones_chords);
 }

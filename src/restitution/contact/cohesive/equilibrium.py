@@ -21,7 +21,11 @@ from numpy.typing import NDArray
 
 from restitution.contact.cohesive.bounded_law import BoundedLaw, law_of, nodes_of
 from restitution.contact.contact import Contact, whole_grid
-from restitution.contact.influence import half_space, periodic_half_space
+from restitution.contact.influence import (
+    approximate_half_space,
+    half_space,
+    periodic_half_space,
+)
 from restitution.contact.state import Array, State
 from restitution.errors import DomainError, NotConvergedError
 from restitution.numerics.box import Box, bounding_box, reframe, shape_of
@@ -84,6 +88,11 @@ class CohesiveState(State):
         return super().mean_gap + law_of(self.contact).equilibrium_separation
 
     @property
+    def jump_error(self) -> float:
+        """The part of `work_error` (J) that is not `unaccounted`."""
+        return self.work_error - abs(self.unaccounted)
+
+    @property
     def potential_energy(self) -> float:
         return self.stored_energy + self.interaction_energy
 
@@ -112,6 +121,7 @@ def solve_cohesive(
     periodic bodies exceeds E*.
     """
     K = _operator(contact, box)
+    parts = None if contact.periodic else PartOperators(contact)
     before = np.zeros(contact.grid.nodes) if history is None else history.plastic_displacement
     upper = limit[box] if isinstance(limit, np.ndarray) else limit
     law = BoundedLaw(contact, _base(contact, indentation, box, before), upper, box)
@@ -120,18 +130,18 @@ def solve_cohesive(
 
     def near(u: Array) -> tuple[Array, Array, Array]:
         if float(np.abs(u - begin).max()) > reach:
-            raise FarEquilibriumError(K.count)
+            raise FarEquilibriumError(K.count + (parts.count if parts else 0))
         return law(u)
 
     solved = minimise_locally(
         K,
         near if reach < math.inf else law,
-        p=p,
-        u=begin,
+        start=(p, begin),
         length=0.5 * z0,
         tolerance=max(_TOLERANCE * residual, _LEAST_TOLERANCE) * z0,
         zero_mean=contact.periodic,
         secant=law.secant if law.steep else None,
+        operator_of=parts,
     )
     if not solved.converged:
         raise NotConvergedError(
@@ -170,7 +180,7 @@ def solve_cohesive(
         adhesive_work=0.0,
         work_error=0.0 if history is None else history.work_error,
         residual=solved.residual / law_of(contact).residual_length(contact.pair, indentation),
-        convolutions=K.count,
+        convolutions=K.count + (parts.count if parts else 0),
         is_first_loading=history is None or history.is_first_loading,
         interaction_energy=energy + far_energy,
         far_force=far_force,
@@ -288,6 +298,26 @@ def _operator(contact: Contact, box: Box) -> Convolution:
         return build(shape_of(box), contact.grid.spacing, contact.pair.contact_modulus)
 
 
+class PartOperators:
+    """Approximate operators from pressure to displacement on parts of the grid of a contact."""
+
+    def __init__(self, contact: Contact) -> None:
+        self._grid, self._modulus = contact.grid, contact.pair.contact_modulus
+        self._known: dict[tuple[int, int], Convolution] = {}
+
+    def __call__(self, shape: tuple[int, int]) -> Convolution:
+        if shape not in self._known:
+            with on_device(CPU):
+                self._known[shape] = approximate_half_space(
+                    shape, self._grid.spacing, self._modulus
+                )
+        return self._known[shape]
+
+    @property
+    def count(self) -> int:
+        return sum(K.count for K in self._known.values())
+
+
 def _base(contact: Contact, indentation: float, box: Box, plastic: Array | None) -> Array:
     base: Array = contact.gap[box] + (law_of(contact).equilibrium_separation - indentation)
     if plastic is not None:
@@ -308,10 +338,9 @@ def _far(contact: Contact, indentation: float, box: Box) -> tuple[float, float]:
     )
     force = energy = 0.0
     for part in outside:
-        gap = np.maximum(contact.gap[part] + (z0 - indentation), 1.2 * z0)
-        potential, traction, _ = law.potential(gap)
-        force -= float(traction.sum()) * grid.cell_area
-        energy += float(potential.sum()) * grid.cell_area
+        energies, tractions = law.totals(contact.gap[part], z0 - indentation, 1.2 * z0)
+        force -= tractions * grid.cell_area
+        energy += energies * grid.cell_area
     # Outside the grid, each body is replaced by its smooth mean surface (`Contact.mean_offset`).
     # Force and energy are integrated outside a circle that has the area of the grid.
     R, (wide, long) = contact.pair.radius, grid.size

@@ -38,6 +38,7 @@ from restitution.numerics.expressions import (
     cubic_root,
     lennard_jones,
     lennard_jones_chords,
+    lennard_jones_totals,
 )
 from restitution.numerics.quadrature import integrate_adaptively
 from restitution.theory import LennardJones
@@ -132,6 +133,11 @@ class CohesiveLaw(Adhesion, NodeLaw):
     def potential(self, gap: Array) -> tuple[Array, Array, Array]:
         """New arrays of energy, traction and stiffness."""
         return self.energy(gap), self.traction(gap), self.stiffness(gap)
+
+    def totals(self, gap: Array, shift: float, least: float) -> tuple[float, float]:
+        """Sums of energy (J/m²) and traction (Pa) at the gap + `shift`, at least `least` (m)."""
+        gap = np.maximum(gap + shift, least)
+        return float(self.energy(gap).sum()), float(self.traction(gap).sum())
 
     def chords(
         self, base: Array, u: Array, known: Triple, ends: tuple[Array, Array], least_way: float
@@ -359,6 +365,10 @@ class Cohesive(CohesiveLaw):
         w, z0 = self.work_of_adhesion, self.equilibrium_separation
         lennard_jones(gap, w, z0, energy, slope, stiffness)
         return energy, slope, stiffness
+
+    def totals(self, gap: Array, shift: float, least: float) -> tuple[float, float]:
+        law = self.work_of_adhesion, self.equilibrium_separation
+        return lennard_jones_totals(gap, shift, least, law)
 
     def continued(self, base: Array, u: Array, ends: Triple) -> tuple[Array, Array, Array]:
         energy, slope, stiffness = (np.empty(base.shape) for _ in range(3))

@@ -26,7 +26,8 @@ from restitution.contact.state import State
 from restitution.numerics.box import reframe, shape_of, union
 from restitution.numerics.quadrature import integrate_curve
 
-_RESIDUAL = 1e-8  # tolerance of the solves under tension and at rest
+# Tolerances of the solves under tension and at rest, and of those of inserted states.
+_RESIDUAL, _INSERTED = 1e-8, 1e-6
 # States are inserted at the largest tension until it agrees with its parabola within this fraction
 # at the default accuracy, and in proportion to it.
 _PEAK, _MOST_INSERTED = 1e-3, 4
@@ -55,7 +56,7 @@ def separate_cohesive(
         yield from (*own, *joined)  # the states around the largest tension are known
     else:
         loose = accuracy / ACCURACY
-        path = _with_largest_tension((*own, *joined), loose * _PEAK)
+        path = _with_largest_tension((*own, *joined), loose)
         yield from _between_nodes(path, loose)
 
 
@@ -103,13 +104,14 @@ def _branch(state: CohesiveState) -> Iterator[CohesiveState]:
 
 def _reversed(loaded: CohesiveState, earlier: CohesiveState) -> CohesiveState:
     """The state `earlier` of loading as a state of the unloading from `loaded`."""
+    unaccounted = 2 * loaded.unaccounted - earlier.unaccounted
     return with_interaction(
         replace(
             earlier,
             adhesive_loss=loaded.adhesive_loss,
             jumps=loaded.jumps,
-            unaccounted=2 * loaded.unaccounted - earlier.unaccounted,
-            work_error=2 * loaded.work_error - earlier.work_error,
+            unaccounted=unaccounted,
+            work_error=2 * loaded.jump_error - earlier.jump_error + abs(unaccounted),
             convolutions=0,
             is_first_loading=False,
             before=None,
@@ -117,17 +119,15 @@ def _reversed(loaded: CohesiveState, earlier: CohesiveState) -> CohesiveState:
     )
 
 
-def _with_largest_tension(
-    path: Sequence[CohesiveState], tolerance: float
-) -> Iterator[CohesiveState]:
+def _with_largest_tension(path: Sequence[CohesiveState], loose: float) -> Iterator[CohesiveState]:
     """Yield `path`, with states inserted where the tension is largest between its states.
 
-    `tolerance` is that of the largest tension, as a fraction.
+    `loose` is the accuracy of the path, as a multiple of the default.
     """
     a, b = None, None
     for c in path:
         if b is not None:
-            yield from _peak(a, b, c, tolerance)
+            yield from _peak(a, b, c, loose)
         a, b = b, c
     assert b is not None
     yield b
@@ -149,7 +149,9 @@ def _between_nodes(path: Iterator[CohesiveState], loose: float) -> Iterator[Cohe
     for _ in range(_ROUNDS):
         k = min(range(len(held)), key=lambda i: held[i].force)
         top, ends = held[k], (*held[max(k - 1, 0) : k], *held[k + 1 : k + 2])
-        inserted = [_between(end, top, at) for end in ends if (at := _halfway(end, top, loose))]
+        inserted = [
+            _between(end, top, at, loose) for end in ends if (at := _halfway(end, top, loose))
+        ]
         held = sorted([*held, *inserted], key=lambda state: -state.indentation)
         if len(ends) < 2:
             break
@@ -176,11 +178,11 @@ def _on_parabola(
 
 
 def _peak(
-    a: CohesiveState | None, b: CohesiveState, c: CohesiveState, tolerance: float
+    a: CohesiveState | None, b: CohesiveState, c: CohesiveState, loose: float
 ) -> Iterator[CohesiveState]:
     """Yield `b` and the states inserted beside it."""
     states = [b]
-    left, middle, right = a, b, c
+    left, middle, right, tolerance = a, b, c, loose * _PEAK
     for _ in range(_MOST_INSERTED):
         if left is None or not left.jumps == middle.jumps == right.jumps:
             break
@@ -190,7 +192,7 @@ def _peak(
         deeper = at > middle.indentation
         if abs(at - middle.indentation) < tolerance * abs(right.indentation - left.indentation):
             break
-        new = _between(left if deeper else right, middle, at)
+        new = _between(left if deeper else right, middle, at, loose)
         states.append(new)
         if abs(new.force - expected) <= tolerance * abs(expected):
             break
@@ -219,12 +221,18 @@ def _parabola(a: CohesiveState, b: CohesiveState, c: CohesiveState) -> tuple[flo
     return slopes[0] + second * left, second
 
 
-def _between(a: CohesiveState, b: CohesiveState, at: float) -> CohesiveState:
+def _between(a: CohesiveState, b: CohesiveState, at: float, loose: float) -> CohesiveState:
     """The equilibrium at an indentation between two states of one branch, near `b`."""
     share = (at - b.indentation) / (a.indentation - b.indentation)
     p = b.box_pressure + share * (reframe(a.box_pressure, a.box, b.box) - b.box_pressure)
     new = solve_cohesive(
-        b.contact, at, b.box, start=(p, None), limit=b.bound, history=b, residual=_RESIDUAL
+        b.contact,
+        at,
+        b.box,
+        start=(p, None),
+        limit=b.bound,
+        history=b,
+        residual=_INSERTED * min(1.0, loose),
     )
     return with_losses_of(b, new)
 
@@ -257,13 +265,14 @@ def _continued(state: CohesiveState, path: Sequence[CohesiveState]) -> Iterator[
     """Yield `path` after its first state, with the losses and errors of `state` added."""
     first = path[0]
     for new in path[1:]:
+        unaccounted = state.unaccounted + new.unaccounted - first.unaccounted
         yield with_interaction(
             replace(
                 new,
                 adhesive_loss=state.adhesive_loss + new.adhesive_loss - first.adhesive_loss,
                 jumps=state.jumps + new.jumps - first.jumps,
-                unaccounted=state.unaccounted + new.unaccounted - first.unaccounted,
-                work_error=state.work_error + new.work_error - first.work_error,
+                unaccounted=unaccounted,
+                work_error=state.jump_error + new.jump_error - first.jump_error + abs(unaccounted),
                 convolutions=0,
             )
         )
@@ -276,7 +285,8 @@ def separation_of(path: list[State]) -> Separation:
     work = start.potential_energy - lost - plastic
     depth, force = ([getattr(state, key) for state in path] for key in ("indentation", "force"))
     by_force = end.potential_energy - integrate_curve(depth, force)
-    steps = max(abs(end.work_error - start.work_error), abs(by_force - work))
+    steps = end.jump_error - start.jump_error + abs(end.unaccounted - start.unaccounted)
+    steps = max(steps, abs(by_force - work))
     return Separation(
         unloading_work=work,
         error=steps + law_of(start.contact).grid_loss(start.contact) * lost,

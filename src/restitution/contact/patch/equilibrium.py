@@ -232,8 +232,7 @@ def solve_with_patches(
     solved = minimise_locally(
         K,
         nodes,
-        p=p,
-        u=K(p),
+        start=(p, K(p)),
         length=scale,
         tolerance=max(_TOLERANCE * residual, _LEAST_TOLERANCE) * scale,
     )

@@ -88,7 +88,7 @@ def _attracted(state: State, k: Array) -> float:
         K = periodic_half_space(grid.nodes, grid.spacing, contact.pair.contact_modulus)
     zero = np.zeros(grid.nodes)
     solved = minimise_locally(
-        K, potential, p=zero, u=zero, length=1.0, tolerance=_TOLERANCE, zero_mean=True
+        K, potential, start=(zero, zero), length=1.0, tolerance=_TOLERANCE, zero_mean=True
     )
     if not solved.converged or solved.negative_curvature:
         raise NotConvergedError(
