@@ -283,6 +283,6 @@ def test_the_loss_by_many_small_jumps_is_within_its_error():
     )
     end = list(unloading_path(solve(contact, 2e-9)))[-1]
     whole = 0.05 * math.prod(contact.grid.size)
-    # With steps 10 times finer: 0.0232 wA, in 30 jumps.
-    assert end.adhesive_loss == approx(0.0232 * whole, abs=end.work_error)
+    # With steps 10 times finer: 0.02334 wA, in 32 jumps.
+    assert end.adhesive_loss == approx(0.02334 * whole, abs=end.work_error)
     assert end.work_error < 0.03 * end.adhesive_loss

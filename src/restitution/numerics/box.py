@@ -50,6 +50,15 @@ def union(first: Box | None, second: Box | None) -> Box | None:
     return rows, columns
 
 
+def intersection(first: Box, second: Box) -> Box:
+    """The part that two boxes share, which may be empty."""
+    rows, columns = (
+        slice(start := max(a.start, b.start), max(min(a.stop, b.stop), start))
+        for a, b in zip(first, second, strict=True)
+    )
+    return rows, columns
+
+
 def reframe(values: NDArray[Scalar], box: Box, target: Box) -> NDArray[Scalar]:
     """`values` on `box` as an array on `target`, zero elsewhere; not copied for equal boxes."""
     if box == target:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from restitution.contact.cohesive.bounded_law import law_of
 from restitution.contact.cohesive.equilibrium import CohesiveState
-from restitution.contact.cohesive.trial import TrialStep, earlier_state
+from restitution.contact.cohesive.trial import LEAP, TrialStep, earlier_state
 
 # Largest relative error of the largest tension where it ends in a jump, but no step is made shorter
 # than _AT_FOLD z₀ for it.
@@ -15,10 +15,6 @@ _AT_JUMP, _AT_FOLD = 3e-3, 0.01
 # Longest step with a jump after another jump, in units of z₀. The energy lost in a longer one may
 # be the error of the trapezium rule.
 _ALONE = 0.08
-# A solve that may pass a jump ends where a node moves by this distance, in units of z₀, from its
-# start. In lactose with Rq 0.15 nm the largest change was below 0.35 z₀ on the branch, and above
-# 1.2 z₀ after a jump.
-_REACH = 0.5
 _MOST_AHEAD = 4  # states that are kept
 # Shortest step, in units of z₀. If even this step fails, the path cannot be followed, and an error
 # is raised.
@@ -65,11 +61,11 @@ class WayAhead:
         assert self.left is not None
         z0 = law_of(state.contact).equilibrium_separation
         width = abs(self.left - state.indentation)
-        jump = abs(self._states[-1].force - state.force)
-        near = 0.5 * jump * width <= self._allowed and not is_long(state, self.left, tension)
+        uncertainty = TrialStep.of(state, self._states[-1]).uncertainty
+        near = uncertainty <= self._allowed and not is_long(state, self.left, tension)
         if near or width <= 2 * LEAST_STEP * z0:
             return self.left, math.inf
-        return 0.5 * (state.indentation + self.left), _REACH * z0
+        return 0.5 * (state.indentation + self.left), LEAP * z0
 
 
 def is_long(state: CohesiveState, at: float, tension: float) -> bool:
