@@ -207,7 +207,7 @@ def test_loading_with_a_larger_tolerance_takes_fewer_solves_and_comes_near():
     fine = sphere(1.0, 12.0, rough=0.5, yield_pressure=4e9)
     coarse = replace(fine, adhesion=fine.adhesion.with_work_tolerance(0.04))
     ends = [solve(contact, 12 * Z0) for contact in (fine, coarse)]
-    assert ends[1].convolutions < 0.65 * ends[0].convolutions
+    assert ends[1].convolutions < 0.6 * ends[0].convolutions
     assert ends[1].loading_work == approx(ends[0].loading_work, rel=0.03)
     assert ends[1].loading_work != ends[0].loading_work
 
@@ -229,7 +229,7 @@ def test_losses_by_jumps_do_not_depend_on_the_accuracy_of_steps():
     assert 1e-20 < loss == approx(finer, rel=0.02)
 
 
-@pytest.mark.parametrize("seed", [2, 4])
+@pytest.mark.parametrize("seed", [1, 4])
 def test_losses_by_jumps_do_not_depend_on_where_the_steps_end(seed):
     """Neither is the largest tension within a step a jump, nor is a jump within a step missed."""
     body = Body(radius=5e-6, youngs_modulus=24.1e9, poissons_ratio=0.3, density=1540)

@@ -119,7 +119,7 @@ def test_the_trust_region_saves_steps_and_products():
         assert found.converged
         assert found.energy < energy
         steps, products = steps + found.steps, products + K.count
-    assert steps <= 146
+    assert steps <= 139
     assert products <= 607
 
 

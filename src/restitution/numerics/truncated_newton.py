@@ -36,7 +36,7 @@ _MOST_ITERATIONS = 500  # limit on the conjugate-gradient iterations of one Newt
 # Largest relative residual of the linear system of a Newton step. It falls with this power of the
 # predicted decrease, relative to the energy, but not below the share _ENOUGH of the decrease of
 # `residual` to the tolerance, at most _LOOSEST.
-_FORCING, _POWER, _ENOUGH, _LOOSEST = 0.15, 0.2, 0.3, 0.3
+_FORCING, _POWER, _ENOUGH, _LOOSEST = 0.1, 0.2, 0.3, 0.3
 
 # Largest row sums of K |φ″| outside the part of the grid on which a Newton step is solved.
 _NEGLIGIBLE = 0.1

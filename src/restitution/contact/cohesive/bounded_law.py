@@ -2,19 +2,54 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Protocol, cast
 
 import numpy as np
 
 from restitution.contact.contact import Contact
 from restitution.contact.state import Array
 from restitution.numerics.box import Box
+from restitution.numerics.expressions import Triple, continue_below
 
 if TYPE_CHECKING:
-    from restitution.contact.cohesive.law import CohesiveLaw, NodeLaw
+    from restitution.contact.cohesive.law import CohesiveLaw
 
 # Gaps that differ by less than this fraction of z₀ are joined by the tangent, not by the chord.
 _TANGENT = 1e-3
+
+
+class NodeLaw(Protocol):
+    """A traction law at certain nodes; the values of a node are in arrays of their shape.
+
+    `steep` tells whether steps along the tangent of its repulsion are poor.
+    """
+
+    @property
+    def steep(self) -> bool: ...
+
+    @property
+    def gap_of_largest_traction(self) -> Array | float: ...
+
+    def potential(self, gap: Array) -> tuple[Array, Array, Array]: ...
+
+    def energy(self, gap: Array) -> Array: ...
+
+    def traction(self, gap: Array) -> Array: ...
+
+    def stiffness(self, gap: Array) -> Array: ...
+
+    def gap_at(self, pressure: Array) -> Array: ...
+
+    def continued(self, base: Array, u: Array, ends: Triple) -> tuple[Array, Array, Array]:
+        """New arrays of energy, traction and stiffness at the gap `base` + `u`.
+
+        Below the smallest gaps of `ends`, the law continues with the pressures and stiffnesses.
+        """
+        gap = base + u
+        inside = np.maximum(gap, ends[0])
+        energy, slope, stiffness = self.potential(inside)
+        continue_below(gap - inside, ends, energy, slope, stiffness)
+        return energy, slope, stiffness
 
 
 def law_of(contact: Contact) -> CohesiveLaw:

@@ -21,11 +21,7 @@ from numpy.typing import NDArray
 
 from restitution.contact.cohesive.bounded_law import BoundedLaw, law_of, nodes_of
 from restitution.contact.contact import Contact, whole_grid
-from restitution.contact.influence import (
-    approximate_half_space,
-    half_space,
-    periodic_half_space,
-)
+from restitution.contact.influence import approximate_half_space, half_space, periodic_half_space
 from restitution.contact.state import Array, State
 from restitution.errors import DomainError, NotConvergedError
 from restitution.numerics.box import Box, bounding_box, reframe, shape_of

@@ -7,7 +7,7 @@ from abc import abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Protocol, cast
+from typing import cast
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from restitution.arguments import typed
 from restitution.contact.bodies import Pair
 from restitution.contact.checks.findings import Finding, RangeUnresolved
 from restitution.contact.checks.resolution import divisions, radius_of_asperities
+from restitution.contact.cohesive.bounded_law import NodeLaw
 from restitution.contact.cohesive.equilibrium import CohesiveState, box_gap
 from restitution.contact.cohesive.loading import load_cohesive, load_until, move
 from restitution.contact.cohesive.separation import separate_cohesive, separation_of
@@ -33,7 +34,6 @@ from restitution.numerics.box import Box
 from restitution.numerics.expressions import (
     Triple,
     chords_over,
-    continue_below,
     continued_lennard_jones,
     cubic_root,
     lennard_jones,
@@ -64,40 +64,6 @@ _SOFTEST = (2 / 15) ** (1 / 6)
 _FAR = 100.0  # gap, in units of z₀, beyond which a law without closed forms does not attract
 _SHARES = (*(0.5**k for k in range(1, 11)), *(-(2.0**k) for k in range(20)))
 _SAMPLES = 2000  # gaps at which the slope of such a law is sampled
-
-
-class NodeLaw(Protocol):
-    """A traction law at certain nodes; the values of a node are in arrays of their shape.
-
-    `steep` tells whether steps along the tangent of its repulsion are poor.
-    """
-
-    @property
-    def steep(self) -> bool: ...
-
-    @property
-    def gap_of_largest_traction(self) -> Array | float: ...
-
-    def potential(self, gap: Array) -> tuple[Array, Array, Array]: ...
-
-    def energy(self, gap: Array) -> Array: ...
-
-    def traction(self, gap: Array) -> Array: ...
-
-    def stiffness(self, gap: Array) -> Array: ...
-
-    def gap_at(self, pressure: Array) -> Array: ...
-
-    def continued(self, base: Array, u: Array, ends: Triple) -> tuple[Array, Array, Array]:
-        """New arrays of energy, traction and stiffness at the gap `base` + `u`.
-
-        Below the smallest gaps of `ends`, the law continues with the pressures and stiffnesses.
-        """
-        gap = base + u
-        inside = np.maximum(gap, ends[0])
-        energy, slope, stiffness = self.potential(inside)
-        continue_below(gap - inside, ends, energy, slope, stiffness)
-        return energy, slope, stiffness
 
 
 class CohesiveLaw(Adhesion, NodeLaw):

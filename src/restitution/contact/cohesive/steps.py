@@ -142,6 +142,8 @@ def follow(
         if smooth:
             room = allowed / max(abs(step.off), 1e-300)
             length *= min(_GROWTH, max(0.5, 0.8 * room ** (1 / 4)))
+            if step.leaps:
+                length = max(length, shortest)
         else:
             length = max(2 * length, shortest)
     raise NotConvergedError(

@@ -63,8 +63,10 @@ class TrialStep:
         return self.by_quartic - self.change
 
     def is_smooth(self, allowed: float) -> bool:
+        if self.leaps and self.uncertainty > allowed:
+            return False
         correction = abs(self.by_quartic - self.by_trapezium)
-        return not self.leaps and abs(self.off) <= allowed and correction <= _CORRECTION * allowed
+        return abs(self.off) <= allowed and correction <= _CORRECTION * allowed
 
 
 def _largest_move(state: CohesiveState, new: CohesiveState) -> float:

@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.contact.cohesive.bounded_law import law_of
-from restitution.contact.cohesive.law import NodeLaw
+from restitution.contact.cohesive.bounded_law import NodeLaw, law_of
 from restitution.contact.contact import Contact
 from restitution.contact.influence import half_space
 from restitution.contact.state import Array

@@ -14,8 +14,9 @@ from restitution.arguments import typed
 from restitution.contact.bodies import Pair
 from restitution.contact.checks.findings import Finding, PatchRangeUnresolved
 from restitution.contact.checks.resolution import radius_of_asperities
+from restitution.contact.cohesive.bounded_law import NodeLaw
 from restitution.contact.cohesive.equilibrium import box_gap
-from restitution.contact.cohesive.law import COARSEST, Cohesive, CohesiveLaw, NodeLaw
+from restitution.contact.cohesive.law import COARSEST, Cohesive, CohesiveLaw
 from restitution.contact.contact import Contact
 from restitution.contact.interface import NoAttraction
 from restitution.contact.models import COMPANION, Plasticity, Separation, adhesive_length
