@@ -28,6 +28,7 @@ from restitution.numerics.quadratic.fused_ops import (
 )
 from restitution.numerics.quadratic.grid_transfer import prolong, restrict
 from restitution.numerics.quadratic.local_mean import local_sums, subtract_local_mean
+from restitution.numerics.quadratic.near_filter import filter_near
 from restitution.numerics.relief import lowest_downhill, ridge_shape
 from tolerance import approx
 
@@ -177,6 +178,7 @@ def test_threads_share_the_rows_and_change_nothing(threads):
     box = as_rows(0.0, 0.9, p)
     sums, nodes = np.empty((2, 8, 8))
     fine, moments = np.empty((2 * shape[0], 2 * shape[1] - 1)), rng.normal(size=(3, 3))
+    kernel = rng.normal(size=(4, 4))
     x, y = (rng.uniform(1, 9, size) for size in ((shape[0], 1), (1, shape[1])))
 
     def everything():
@@ -204,6 +206,8 @@ def test_threads_share_the_rows_and_change_nothing(threads):
             restrict(fine, its_g),
             its_g.copy(),
             multipoles(x, y, moments, its_g),
+            its_g.copy(),
+            filter_near(p, kernel, 2.0, its_g),
             its_g,
         ]
 
@@ -245,6 +249,17 @@ def test_going_between_grids_is_that_of_the_expressions(dtype, shape, seed):
     for operation, *args in ((restrict, fine, coarse), (prolong, coarse, fine)):
         (_, (_, expected)), (_, (_, found)) = both(operation, *args)
         assert_allclose(found, expected, rtol=few, atol=few)
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@settings(deadline=None, max_examples=25)
+@given(shapes, seeds)
+def test_a_filter_of_near_nodes_is_that_of_the_expression(dtype, shape, seed):
+    rng = np.random.default_rng(seed)
+    r, kernel = rng.normal(size=shape).astype(dtype), rng.normal(size=(4, 4))
+    few = 200 * np.finfo(dtype).eps
+    (_, (*_, expected)), (_, (*_, found)) = both(filter_near, r, kernel, 0.3, np.empty_like(r))
+    assert_allclose(found, expected, rtol=few, atol=few)
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
@@ -331,9 +346,11 @@ def test_a_loop_refuses_arrays_whose_results_would_be_lost():
         (curvature, fine, np.zeros((8, 13))),
         (restrict, fine, np.zeros((3, 6))),
         (prolong, np.zeros((4, 5)), fine),
+        (filter_near, fine, np.zeros((4, 4)), 1.0, np.zeros((8, 13))),
+        (filter_near, fine, np.zeros((3, 4)), 1.0, fine.copy()),
         (multipoles, fine, fine, np.zeros((3, 3)), fine),
     ):
-        with pytest.raises(ValueError, match=r"shape|half as many|shapes do not match"):
+        with pytest.raises(ValueError, match=r"shape|half as many|shapes do not match|4 x 4"):
             operation(*args)
 
 

@@ -29,15 +29,17 @@ from restitution.contact.influence import (
     half_space,
     inverse_half_space,
     periodic_half_space,
+    short_inverse_half_space,
 )
 from restitution.contact.state import Array, State
 from restitution.errors import DomainError, NotConvergedError
 from restitution.numerics.box import NOWHERE, Box, bounding_box, shape_of, widen
 from restitution.numerics.convolution.device import current
-from restitution.numerics.convolution.operators import Convolution, SpectralFilter
+from restitution.numerics.convolution.operators import Convolution
 from restitution.numerics.quadratic.minimise import (
     BoundedQuadratic,
     Minimum,
+    Operator,
     minimise_quadratic,
 )
 from restitution.numerics.quadratic.multilevel import Operators, solve_multilevel
@@ -199,8 +201,10 @@ def elastic_pressure(
     device = current()
     b = _overlap(contact, indentation, box)
     scale = _scale_of(contact, indentation, b)
+    make = approximate_half_space if residual >= _ROUGH else None
     minimum, window, convolutions = solve_near_guess(
-        operators_of(contact, approximate_half_space if residual >= _ROUGH else None),
+        operators_of(contact, make),
+        operators_of(contact, make, short_inverse_half_space),
         device.put(b),
         tolerance=residual * scale,
         max_iterations=MAX_ITERATIONS,
@@ -227,18 +231,22 @@ def _scale_of(contact: Contact, indentation: float, b: Array) -> float:
     return contact.adhesion.residual_length(contact.pair, indentation)
 
 
-def operators_of(contact: Contact, make: Callable[..., Convolution] | None = None) -> Operators:
+def operators_of(
+    contact: Contact,
+    make: Callable[..., Convolution] | None = None,
+    invert: Callable[..., Operator] = inverse_half_space,
+) -> Operators:
     """Return a function that makes two operators for a grid level: K and its approximate inverse.
 
     The elastic operator K gives the displacement due to a pressure. `make` makes K, by default for
-    the free or periodic half-space.
+    the free or periodic half-space, and `invert` its inverse.
     """
     E_star, (hx, hy) = contact.pair.contact_modulus, contact.grid.spacing
     make = make or (periodic_half_space if contact.periodic else half_space)
 
-    def operators(shape: tuple[int, int], level: int) -> tuple[Convolution, SpectralFilter]:
+    def operators(shape: tuple[int, int], level: int) -> tuple[Convolution, Operator]:
         cells = 2**level * hx, 2**level * hy
-        return make(shape, cells, E_star), inverse_half_space(shape, cells, E_star)
+        return make(shape, cells, E_star), invert(shape, cells, E_star)
 
     return operators
 

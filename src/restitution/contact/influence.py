@@ -26,6 +26,7 @@ from restitution.numerics.convolution.operators import (
     WrappedConvolution,
 )
 from restitution.numerics.expressions import multipoles
+from restitution.numerics.quadratic.near_filter import NearFilter
 
 Array = NDArray[np.float64]
 Operator = TypeVar("Operator", Convolution, FreeConvolution, PeriodicConvolution, SpectralFilter)
@@ -172,6 +173,14 @@ def inverse_half_space(
         return q
 
     return SpectralFilter(symbol, shape, current())
+
+
+def short_inverse_half_space(
+    shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
+) -> NearFilter:
+    """Approximate inverse of `half_space` for short waves, on arrays of any `shape`."""
+    hx, hy = spacing
+    return NearFilter(hy / hx, 0.5 * contact_modulus / hx)
 
 
 @_cached

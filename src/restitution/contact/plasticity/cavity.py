@@ -199,8 +199,7 @@ def yield_bound(contact: Contact, indentation: float, residual: float) -> tuple[
     if pressure.size == 0:
         return freeze(bound), convolutions
     force = float(pressure.sum(dtype=np.float64)) * contact.grid.cell_area
-    harder: Array | float = 1.0
-    logarithms = np.broadcast_to(np.zeros(pressure.shape[1]), pressure.shape)
+    harder, logarithms = None, np.broadcast_to(np.zeros(pressure.shape[1]), pressure.shape)
     if model.size_effect:
         harder, count = strengthening_at(contact, indentation, model.size_effect)
         convolutions += count
@@ -215,7 +214,8 @@ def yield_bound(contact: Contact, indentation: float, residual: float) -> tuple[
         _OF_RIDGE,
         bound[box],
     )
-    bound *= harder
+    if harder is not None:
+        bound *= harder
     return freeze(bound), convolutions
 
 

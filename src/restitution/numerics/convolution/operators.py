@@ -97,6 +97,10 @@ class Convolution(_Spectral):
         """Return K ∗ p in single precision, with errors up to 9e-7 times its largest magnitude."""
         return self._convolve(p, self._single_spectrum, out, 1.0)
 
+    def without_mean(self, p: Array, out: Array | None = None) -> Array:
+        """Return K ∗ p in single precision for a p with local means near zero."""
+        return self.single_precision(p, out)
+
 
 class FreeConvolution(Convolution):
     """Linear convolution: values outside the array are zero.
@@ -164,7 +168,7 @@ class WrappedConvolution(Convolution):
 
     def __call__(self, p: Array, out: Array | None = None) -> Array:
         """Return K ∗ p, with the shape of `p`, in a new array or in `out`."""
-        result = self._convolve(p, self._spectrum, out, 1.0)
+        result = self.without_mean(p, out)
         wider = coarsened(p)
         widest = coarsened(wider)
         far = self._far(widest, out=np.empty_like(widest))
@@ -172,6 +176,9 @@ class WrappedConvolution(Convolution):
         return result
 
     single_precision = __call__
+
+    def without_mean(self, p: Array, out: Array | None = None) -> Array:
+        return self._convolve(p, self._spectrum, out, 1.0)
 
 
 class PeriodicConvolution(Convolution):

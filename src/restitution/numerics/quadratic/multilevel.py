@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.numerics.box import Box, bounding_box, shape_of, union, widen
-from restitution.numerics.convolution.operators import Convolution, SpectralFilter
+from restitution.numerics.convolution.operators import Convolution
 from restitution.numerics.expressions import dot
 from restitution.numerics.quadratic.fused_ops import Bound
 from restitution.numerics.quadratic.grid_transfer import Fields, nested, prolonged
@@ -32,7 +32,7 @@ Mask = NDArray[np.bool_]
 
 # Function that builds the operator and its approximate inverse for a shape (nodes) and a level n.
 # At level n the spacing is 2ⁿ times the spacing of the finest grid.
-Operators = Callable[[tuple[int, int], int], tuple[Convolution, SpectralFilter]]
+Operators = Callable[[tuple[int, int], int], tuple[Convolution, Operator]]
 
 # The finest grid is solved from a guess on coarser grids if its shorter edge has at least this
 # number of nodes. On smaller grids the guess costs more time than it saves.

@@ -3,7 +3,7 @@
 Means over 2 × 2 nodes hide the roughness between the nodes, so far too many nodes of a coarser grid
 are in contact, but the mean pressure is nearly right. The guess gets short waves and keeps its
 local means; the preconditioner then keeps them nearly constant, which on separate patches the
-approximate inverse alone would not.
+approximate inverse alone would not. So an inverse for short waves is enough.
 """
 
 from __future__ import annotations
@@ -49,11 +49,17 @@ _LAST_STEP = 0.6
 
 
 def solve_near_guess(
-    operators: Operators, b: Array, *, tolerance: float, max_iterations: int
+    operators: Operators,
+    near: Operators,
+    b: Array,
+    *,
+    tolerance: float,
+    max_iterations: int,
 ) -> tuple[Minimum, Box, int]:
     """Minimise ½ pᵀK p − pᵀb with 0 ≤ p approximately, on a window around a guess.
 
-    The arguments are those of `solve_multilevel`, but `tolerance` limits the root mean square of
+    The arguments are those of `solve_multilevel`, but the inverse of `near`, which is used from a
+    guess, needs to be good only for short waves, and `tolerance` limits the root mean square of
     the violation: the largest violation often occurs at a few nodes that hardly affect the result.
     Nodes outside the window are neither solved nor checked; it includes all nodes where the guess
     has pressure or leaves an overlap. A last step without a product with K makes the point more
@@ -62,18 +68,19 @@ def solve_near_guess(
     """
     if tolerance >= _SINGLE * float(b.max()):
         b = b.astype(np.float32)
-    guess = _guess(operators, b) if min(b.shape) >= MIN_NODES_FOR_GUESS else None
-    return _solve_around(guess, operators, b, 0, tolerance=tolerance, max_iterations=max_iterations)
+    guess = _guess(operators, near, b) if min(b.shape) >= MIN_NODES_FOR_GUESS else None
+    to = operators if guess is None else near
+    return _solve_around(guess, to, b, 0, tolerance=tolerance, max_iterations=max_iterations)
 
 
-def _guess(operators: Operators, b: Array) -> Guess | None:
+def _guess(operators: Operators, near: Operators, b: Array) -> Guess | None:
     """Return p and K p of the next coarser grid, prolonged."""
 
     def refine(coarse: Fields, start: Guess | None, fine: Fields, level: int) -> Guess:
         (b,), (finer,) = cast(tuple[Array], coarse), cast(tuple[Array], fine)
         minimum, window, _ = _solve_around(
             start,
-            operators,
+            operators if start is None else near,
             b,
             level,
             tolerance=_COARSE_ACCURACY * max(float(finer.max()), 0.0),
@@ -124,9 +131,11 @@ def _solve_from(
     K, inverse = operators
     start = np.zeros_like(b) if guess is None else add_short_waves(*guess, inverse, b)
     precondition = balanced_preconditioner(inverse, start, b)
+    balanced = precondition is not inverse
     minimum = minimise_quadratic(
-        BoundedQuadratic(K, b, 0.0, math.inf, K.single_precision),
+        BoundedQuadratic(K, b, 0.0, math.inf, K.without_mean if balanced else K.single_precision),
         start=start,
+        K_start=K.single_precision(start, out=np.empty_like(start)) if balanced else None,
         precondition=precondition,
         tolerance=tolerance,
         max_iterations=max_iterations,
@@ -134,10 +143,12 @@ def _solve_from(
         mean_violation=True,
     )
     p, g = minimum.point, minimum.gradient
-    r: Any = (g * ((p > 0) | (g < 0))).astype(np.float32, copy=False)
-    step = precondition(r)
-    step *= -_LAST_STEP
+    r: Any = np.empty_like(p, dtype=np.float32)
+    bounds: Any = as_rows(0.0, math.inf, p)
+    projected_gradient(p, g, bounds[0], bounds, r)  # subtracts 0
+    step = precondition(r, out=np.empty_like(r))
     step *= r != 0
+    step *= -_LAST_STEP
     np.maximum(np.add(p, step, out=p), 0.0, out=p)
     return minimum
 
@@ -173,10 +184,12 @@ def balanced_preconditioner(inverse: Operator, p: Array, b: Array) -> Operator:
     if share == 0.0:
         return inverse
 
+    damped: Any = np.empty_like(p, dtype=np.float32)
+
     def balanced(r: Array, out: Array | None = None) -> Array:
         result = np.empty_like(r) if out is None else out
-        damp_local_mean(r, share, _PLACES, result)
-        inverse(result, out=result)
+        damp_local_mean(r, share, _PLACES, damped)
+        inverse(damped, out=result)
         damp_local_mean(result, share, _PLACES, result, mask=r)
         return result
 
