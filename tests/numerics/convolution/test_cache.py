@@ -38,6 +38,17 @@ def test_the_least_recently_used_is_dropped_first(cache):
     assert [key for key in "abcde" if cache.get(key) is not None] == ["d", "e"]
 
 
+def test_more_small_values_are_kept():
+    cache = OperatorCache(max_bytes=100, max_items=3, small_bytes=50)
+    for key in "abcde":
+        cache.put(key, block(10))
+    assert (len(cache), cache.nbytes) == (5, 50)
+    cache.put("f", block(20))  # as many as take no more than 50 bytes
+    assert [key for key in "abcdef" if cache.get(key) is not None] == ["c", "d", "e", "f"]
+    cache.put("g", block(60))
+    assert [key for key in "cdefg" if cache.get(key) is not None] == ["e", "f", "g"]
+
+
 def test_a_value_takes_the_place_of_the_former_one(cache):
     cache.put("a", block(60))
     cache.put("a", block(80))

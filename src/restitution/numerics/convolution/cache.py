@@ -19,12 +19,14 @@ class HasBytes(Protocol):
 class OperatorCache:
     """The most recently used values, at most `max_items` with at most `max_bytes` in total.
 
-    Values are shared between threads, so callers must not change them.
+    There may be more while they have at most `small_bytes` in total. Values are shared between
+    threads, so callers must not change them.
     """
 
-    def __init__(self, max_bytes: int, max_items: int) -> None:
-        self._max_bytes, self._max_items = max_bytes, max_items
+    def __init__(self, max_bytes: int, max_items: int, small_bytes: int = 0) -> None:
+        self._max_bytes, self._max_items, self._small_bytes = max_bytes, max_items, small_bytes
         self._values: OrderedDict[Hashable, HasBytes] = OrderedDict()
+        self._nbytes = 0
         self._lock = RLock()
 
     @property
@@ -42,8 +44,7 @@ class OperatorCache:
     @property
     def nbytes(self) -> int:
         """Total size of all values (bytes)."""
-        with self._lock:
-            return sum(value.nbytes for value in self._values.values())
+        return self._nbytes
 
     def __len__(self) -> int:
         return len(self._values)
@@ -59,21 +60,26 @@ class OperatorCache:
         """Store `value`, unless it alone exceeds `max_bytes`."""
         with self._lock:
             if value.nbytes <= self._max_bytes:
+                former = self._values.pop(key, None)
+                self._nbytes += value.nbytes - (former.nbytes if former is not None else 0)
                 self._values[key] = value
-                self._values.move_to_end(key)
                 self._shrink()
 
     def clear(self) -> None:
         """Drop all values. A running solve keeps the values that it uses."""
         with self._lock:
             self._values.clear()
+            self._nbytes = 0
 
     def _shrink(self) -> None:
-        while self._values and (len(self) > self._max_items or self.nbytes > self._max_bytes):
-            self._values.popitem(last=False)
+        def is_full() -> bool:
+            many = len(self) > self._max_items and self._nbytes > self._small_bytes
+            return many or self._nbytes > self._max_bytes
+
+        while self._values and is_full():
+            self._nbytes -= self._values.popitem(last=False)[1].nbytes
 
 
-# Cache of operators and kernels for the whole process. A few items are enough: each operator fits
-# one size of the rectangle of nodes that is solved. This rectangle grows with the contact, so
-# operators for smaller rectangles are rarely used again.
-operator_cache = OperatorCache(max_bytes=384 * 2**20, max_items=17)
+# Cache of operators and kernels for the whole process. Each operator fits one size of the rectangle
+# of nodes that is solved, which grows with the contact. Other surfaces need the same sizes again.
+operator_cache = OperatorCache(max_bytes=384 * 2**20, max_items=17, small_bytes=32 * 2**20)
