@@ -75,6 +75,28 @@ def test_a_jump_is_bracketed_by_solves_that_end_early(monkeypatch):
     assert sum(n for kind in spent.values() for n in kind) == approx(path, rel=0.005)
 
 
+@pytest.mark.parametrize("seed", [1, 3])
+def test_a_long_step_under_pressure_is_halved_without_a_search_for_a_jump(monkeypatch, seed):
+    """Its nodes move farther than a jump would; such paths took up to 45 solves."""
+    tried, left, make = [], [], cohesive_steps._try
+
+    def watched(state, *options):
+        tried.append(state)
+        try:
+            return make(state, *options)
+        except FarEquilibriumError:
+            left.append(state.force)
+            raise
+
+    monkeypatch.setattr(cohesive_steps, "_try", watched)
+    contact = rough_silica(70e9, rms=2e-9, length=50e-9, seed=seed)
+    begin = load_cohesive(contact, -math.inf, start=None, residual=1e-8)
+    end = [*follow(begin, 8e-9, residual=1e-8, accuracy=2e-3)][-1]
+    assert end.indentation == 8e-9
+    assert max(left, default=0.0) <= 0
+    assert len(tried) <= 22
+
+
 @pytest.mark.parametrize("of_step", [0.0, 2e-6, 2e-5])
 def test_a_step_after_a_jump_loses_no_energy_by_its_length(monkeypatch, of_step):
     """Steps of 0.25 z0 lost four times as much, and had a pull-off force 3 % too small."""
@@ -118,10 +140,10 @@ def unloaded(contact, depths, *, share):
     return np.array(found).T
 
 
-def rough_silica(youngs_modulus, limit=math.inf):
+def rough_silica(youngs_modulus, limit=math.inf, *, rms=1e-9, length=60e-9, seed=1):
     body = Body(radius=5e-6, youngs_modulus=youngs_modulus, poissons_ratio=0.17)
     surface = generate_surface(
-        Grid(96, 4e-9), kind="gaussian", rms=1e-9, correlation_length=60e-9, seed=1
+        Grid(96, 4e-9), kind="gaussian", rms=rms, correlation_length=length, seed=seed
     )
     return Contact(
         Pair(body, body), surface, plasticity=ConstantBound(limit), adhesion=Cohesive(0.05)

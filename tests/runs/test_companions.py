@@ -108,7 +108,20 @@ def test_another_curve_takes_far_fewer_products_than_the_run(tmp_path, monkeypat
         before = products
         other = companions.curve(contact)
         assert other.work[0] < state.loading_work <= other.work[-1]
-        assert products - before < 0.4 * run
+        assert products - before < 0.3 * run
+
+
+def test_an_impact_is_near_each_work_even_if_the_work_rises_past_the_first(tmp_path):
+    """The state before has no positive work, so it has no impact."""
+    companions = Companions(parse_case(COHESIVE), tmp_path, DEPTHS, works_of(tmp_path, DEPTHS))
+    path = solve(companions.coarse, DEPTHS[0])
+    while path.loading_work > 0:
+        path, after = path.before, path
+    first, last = 0.5 * after.loading_work, companions.works[-1]
+    few = replace(companions, depths=DEPTHS[:2], works=[first, last])
+    curve = few.curve(coarser_contact(few.case.variant(1).contact(tmp_path)))
+    assert curve.work.size == 2
+    assert 0 < curve.work[0] < 0.5 * last <= curve.work[1]
 
 
 def test_other_materials_may_need_finer_cells_than_a_companion_has(tmp_path):

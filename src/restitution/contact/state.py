@@ -149,7 +149,7 @@ class State:
         gap = self.contact.gap.mean() + self.plastic_displacement.mean() - self.indentation
         return float(gap)
 
-    @property
+    @cached_property
     def stored_energy(self) -> float:
         """Elastic energy ½ Σ p u hx hy (J).
 

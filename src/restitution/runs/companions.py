@@ -35,8 +35,8 @@ from restitution.curve.work_curve import WorkCurve
 from restitution.errors import CaseError
 from restitution.runs.companion_curves import (
     curve_of,
+    impacts_around,
     impacts_of,
-    loads_around,
     loads_at,
     work_curve,
 )
@@ -242,7 +242,7 @@ class Companions:
     @cached_property
     def _own_impacts(self) -> list[Impact]:
         if self._follows_paths:
-            return self._impacts_around(self.coarse, self._own_works)
+            return impacts_around(self.coarse, self._own_works, self.case.unloading.method)
         loads = loads_at([self.coarse] * len(self.depths), self.depths)
         return impacts_of(loads, self.case.unloading.method)
 
@@ -273,11 +273,6 @@ class Companions:
         known = self._own_impacts
         return known[:1] + [impact for impact in known[1:] if impact.load.prescribed in near]
 
-    def _impacts_around(self, contact: Contact, works: Sequence[float]) -> list[Impact]:
-        if not works:
-            return []
-        return impacts_of(loads_around(contact, works), self.case.unloading.method)
-
     @cached_property
     def _others(self) -> list[WorkCurve]:
         return []
@@ -298,7 +293,8 @@ class Companions:
 
     def _curve(self, contact: Contact) -> WorkCurve:
         if self._follows_paths:
-            return work_curve(self._impacts_around(contact, _compared_works(self._works)))
+            works = _compared_works(self._works)
+            return work_curve(impacts_around(contact, works, self.case.unloading.method))
         return curve_of(contact, self.depths, self.case.unloading.method)
 
 

@@ -19,7 +19,7 @@ from restitution.contact.cohesive.equilibrium import (
     with_losses_of,
 )
 from restitution.contact.cohesive.guide import Guide
-from restitution.contact.cohesive.steps import ACCURACY, follow
+from restitution.contact.cohesive.steps import ACCURACY, USUAL, follow
 from restitution.contact.cohesive.trial import reference_energy
 from restitution.contact.models import Separation
 from restitution.contact.state import State
@@ -84,11 +84,11 @@ def _separating(
         state = own[-1]
         if _is_same(state, meeting):
             return list(_continued(state, shared[shared.index(meeting) :]))
-    tension = max(-one.force for one in own)
+    tension, farthest = max(-one.force for one in own), _FARTHEST * max(1.0, accuracy / USUAL)
     for new in back(state, -math.inf):
         own.append(new)
         tension = max(tension, -new.force)
-        if new.contact_nodes == 0 and -new.force <= _FARTHEST * tension and is_unique(new):
+        if new.contact_nodes == 0 and -new.force <= farthest * tension and is_unique(new):
             break
     return ()
 

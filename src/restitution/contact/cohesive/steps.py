@@ -35,9 +35,9 @@ from restitution.numerics.box import reframe, shape_of, union
 # largest accepted difference, as a fraction of the reference energy `reference_energy`.
 ACCURACY = 5e-4
 # Tolerances of the solves of loading between the given depths, whose errors can become plastic
-# displacement, and of unloading under pressure.
-_BETWEEN, _BACK = 1e-5, 1e-4
-_ACCURACY_BACK = 0.5 * ACCURACY  # usual accuracy of unloading
+# displacement, and of unloading under pressure, at most _LOOSEST times as large.
+_BETWEEN, _BACK, _LOOSEST = 1e-5, 1e-4, 3.0
+USUAL = 0.5 * ACCURACY  # accuracy of unloading by default
 # Under tension, at most this fraction of the length of a step in units of z₀, because short steps
 # are those before a jump, and less where the largest displacement is below z₀.
 _OF_STEP = 2e-5
@@ -79,7 +79,8 @@ def follow(
     sign = 1.0 if target > state.indentation else -1.0
     shortest = _FIRST_STEP * z0
     if state.smallest_gap < 1.1 * z0:  # the bodies touch
-        shortest = max(shortest, (0.02 if sign > 0 else 0.08) * abs(state.indentation))
+        share = 0.02 if sign > 0 else 0.08 * (accuracy / USUAL) ** (1 / 4)
+        shortest = max(shortest, share * abs(state.indentation))
     length = shortest
     # The last step before a prescribed depth is often short, so the one before counts, too.
     later, earlier = state, earlier_state(state, target)
@@ -114,7 +115,7 @@ def follow(
             rejected += state_on.convolutions
             state = state_on
         try:
-            loose = residual if last else max(residual, _tolerance(state, at, accuracy))
+            loose = residual if last else _tolerance(state, at, accuracy, residual)
             step = _try(state, at, loose, known or guide, reach)
         except FarEquilibriumError as left_branch:
             rejected += left_branch.convolutions
@@ -167,20 +168,21 @@ def _next(state: CohesiveState, target: float, length: float) -> float:
     return state.indentation + math.copysign(min(length, 0.5 * left), target - state.indentation)
 
 
-def _tolerance(state: CohesiveState, at: float, accuracy: float) -> float:
+def _tolerance(state: CohesiveState, at: float, accuracy: float, residual: float) -> float:
     """Tolerance of a solve at the indentation `at` between the given depths.
 
-    It falls with the accuracy of steps, or else errors of the forces would count as jumps.
+    It falls with the accuracy of steps, or else errors of the forces would count as jumps; without
+    pressure, an accepted `residual` is no reason to exceed _BETWEEN.
     """
     if state.force > 0:
         if at > state.indentation:
-            return _BETWEEN * min(1.0, accuracy / ACCURACY)
-        return _BACK * min(1.0, accuracy / _ACCURACY_BACK)
+            return max(residual, _BETWEEN * min(1.0, accuracy / ACCURACY))
+        return max(residual, _BACK * min(_LOOSEST, accuracy / USUAL))
     z0 = law_of(state.contact).equilibrium_separation
     if state.smallest_gap > _NEAR * z0:  # the forces of bodies far apart are small
-        return 0.0
+        return min(residual, _BETWEEN)
     deformed = min(float(np.abs(state.box_displacement).max()) / z0, 1.0)
-    return min(_BETWEEN, _OF_STEP * deformed * abs(at - state.indentation) / z0)
+    return min(_BETWEEN, max(residual, _OF_STEP * deformed * abs(at - state.indentation) / z0))
 
 
 def _allowed(

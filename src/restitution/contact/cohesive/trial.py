@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from restitution.contact.cohesive.bounded_law import law_of
 from restitution.contact.cohesive.equilibrium import CohesiveState
 from restitution.numerics.box import intersection, reframe
@@ -91,14 +89,18 @@ def _quartic(previous: CohesiveState, state: CohesiveState, new: CohesiveState) 
     """
     way = new.indentation - state.indentation
     g = (previous.indentation - state.indentation) / way
+    first = state.force * way
     energy = previous.potential_energy + previous.plastic_work
     energy -= state.potential_energy + state.plastic_work
-    first = state.force * way
-    c = np.linalg.solve(
-        [[g**2, g**3, g**4], [2 * g, 3 * g**2, 4 * g**3], [2.0, 3.0, 4.0]],
-        [energy - first * g, previous.force * way - first, new.force * way - first],
-    )
-    return first + float(c.sum())
+    # Beyond `first` x, the quartic is c₂x² + c₃x³ + c₄x⁴ with x from 0 to 1 in the step; here are
+    # its value and slope at x = g, and its slope at x = 1.
+    energy -= first * g
+    before, after = previous.force * way - first, new.force * way - first
+    c4 = after + 6 * energy * (1 - g) / g**3 + before * (2 * g - 3) / g**2
+    c4 /= 2 * (g - 1) * (g - 2)
+    c3 = (before - 2 * energy / g) / g**2 - 2 * g * c4
+    c2 = energy / g**2 - g * c3 - g**2 * c4
+    return first + c2 + c3 + c4
 
 
 def reference_energy(state: CohesiveState, *, loading: bool) -> float:
