@@ -21,6 +21,16 @@ inline double logarithm(double x) {
     return exponent * 0.69314718055994530942 + 2 * s * series;
 }
 
+struct ThreeSums {
+    Sums two{};
+    double third = 0;
+
+    void add(const ThreeSums& other) {
+        two.add(other.two);
+        third += other.third;
+    }
+};
+
 template <class P>
 void growing_bound(Rows<const P> pressure,
                    const std::pair<Rows<const double>, Rows<const double>>& smooth,
@@ -81,7 +91,28 @@ void growing_bound(Rows<const P> pressure,
     over_rows(some, pressure, crest_gap, elongation, out);
 }
 
+inline std::tuple<double, double, double> step_sums(Rows<const double> now, Rows<const double> before,
+                                                    Rows<const double> begun, Rows<const double> bound) {
+    const auto some = [&](Index begin, Index end) {
+        double whole = 0, on = 0, fresh = 0;
+        for (Index i = begin; i < end; ++i) {
+            const double *u = now[i], *old = before[i], *from = begun[i], *to = bound[i];
+#pragma omp simd reduction(+ : whole, on, fresh)
+            for (Index j = 0; j < now.length; ++j) {
+                const double given = u[j] - old[j], more = given * (to[j] - from[j]);
+                whole += given * from[j];
+                on += old[j] > 0 ? more : 0.0;
+                fresh += old[j] > 0 ? 0.0 : more;
+            }
+        }
+        return ThreeSums{{whole, on}, fresh};
+    };
+    const ThreeSums sums = over_rows(some, now, before, begun, bound);
+    return {sums.two.first, sums.two.second, sums.third};
+}
+
 inline void define_growing_bound(py::module_& module) {
+    module.def("step_sums", &step_sums);
     module.def("growing_bound", &growing_bound<float>);
     module.def("growing_bound", &growing_bound<double>);
 }

@@ -49,6 +49,19 @@ def growing_bound(
     out[nodes] = bound_of(np.maximum(grown, 0), ridge, constants, of_ridge)
 
 
+@use_loop
+def step_sums(now: Array, before: Array, begun: Array, bound: Array) -> tuple[float, float, float]:
+    """Sums for the plastic work of a step with the displacement Δ = `now` − `before`.
+
+    Σ Δ `begun`, and Σ Δ (`bound` − `begun`) where `before` > 0 and elsewhere.
+    """
+    given = now - before
+    more = given * (bound - begun)
+    yielded = before > 0
+    whole, on, fresh = given * begun, more * yielded, more * ~yielded
+    return float(whole.sum()), float(on.sum()), float(fresh.sum())
+
+
 def bound_of(growth: Array, ridge: Array, constants: Constants, of_ridge: OfRidge) -> Array:
     """min(m₀ + s·growth, M) (1 + h (m₁/m₀) (e^growth − 1)); m₀, s, M and h are the `constants`.
 

@@ -35,39 +35,45 @@ inline void ridge_shape(Rows<const double> heights, double hx, double hy, Rows<d
 inline void lowest_downhill(Rows<const double> heights, Rows<double> out) {
     expect_one_shape(heights, out);
     const Index rows = heights.count, columns = heights.length;
-    std::vector<Index> following(rows * columns), path;
+    if (rows * columns > std::numeric_limits<std::int32_t>::max())
+        throw std::invalid_argument("too many nodes");
+    std::vector<std::int32_t> following(rows * columns), path;
+    std::vector<double> end(rows * columns);  // of known paths, else the height
     for (Index i = 0; i < rows; ++i) {
-        Index* best = following.data() + i * columns;
+        std::int32_t* best = following.data() + i * columns;
         double* lowest = out[i];
-        for (Index j = 0; j < columns; ++j) best[j] = i * columns + j, lowest[j] = heights[i][j];
+        std::iota(best, best + columns, std::int32_t(i * columns));
+        std::copy(heights[i], heights[i] + columns, lowest);
+        std::copy(heights[i], heights[i] + columns, end.data() + i * columns);
         for (Index k = std::max(i - 1, Index(0)); k <= std::min(i + 1, rows - 1); ++k) {
             for (Index shift = -1; shift <= 1; ++shift) {
                 const double* row = heights[k] + shift;
-                const Index node = k * columns + shift, end = columns - std::max(shift, Index(0));
+                const auto node = std::int32_t(k * columns + shift);
+                const Index last = columns - std::max(shift, Index(0));
 #pragma omp simd
-                for (Index j = std::max(-shift, Index(0)); j < end; ++j) {
+                for (Index j = std::max(-shift, Index(0)); j < last; ++j) {
                     const bool lower = row[j] < lowest[j];
-                    best[j] = lower ? node + j : best[j];
+                    best[j] = lower ? node + std::int32_t(j) : best[j];
                     lowest[j] = lower ? row[j] : lowest[j];
                 }
             }
         }
     }
-    constexpr Index known = -1;
-    for (Index start = 0; start < rows * columns; ++start) {
-        Index node = start;
+    constexpr std::int32_t known = -1;
+    for (std::int32_t start = 0; start < rows * columns; ++start) {
+        std::int32_t node = start;
         path.clear();
         for (; following[node] != known; node = following[node]) {
             path.push_back(node);
             if (following[node] == node) break;
         }
-        const double end = following[node] == known ? out[node / columns][node % columns]
-                                                    : heights[node / columns][node % columns];
-        for (const Index passed : path) {
-            out[passed / columns][passed % columns] = end;
+        for (const std::int32_t passed : path) {
+            end[passed] = end[node];
             following[passed] = known;
         }
     }
+    for (Index i = 0; i < rows; ++i)
+        std::copy(end.data() + i * columns, end.data() + (i + 1) * columns, out[i]);
 }
 
 inline void define_relief(py::module_& module) {

@@ -10,7 +10,7 @@ import numpy as np
 from restitution.contact.models import Load, Plasticity
 from restitution.contact.state import Array, State
 from restitution.numerics.box import Box, shape_of
-from restitution.numerics.expressions import dot
+from restitution.numerics.growing_bound import step_sums
 
 # In each step, the pressure bound of a node grows. The error of the plastic work is a fraction of
 # this growth times the plastic displacement of the step. The fraction is _RULE_ERROR for nodes that
@@ -43,20 +43,14 @@ class ChangingBound(Plasticity):
         indentation δ and the bound as linear in ln δ. The work per area of the displacement Δu is
         then Δu [b₁ + (b₂ − b₁) (δ₂/(δ₂ − δ₁) − 1/ln(δ₂/δ₁))].
         """
-        contact, box, ratio, on = after.contact, after.box, math.inf, 0.0
-        given, bound = after.plastic_displacement[box], _on(after.bound, box)
-        begun, old = _on(self.begun(after), box), None
+        contact, box, ratio = after.contact, after.box, math.inf
+        begun, old = _on(self.begun(after), box), _on(0.0, box)
         if before is not None:
             begun, old = _on(before.bound, box), before.plastic_displacement[box]
-            given = given - old
             if before.indentation > 0:
                 ratio = after.indentation / before.indentation
-        whole = dot(given, begun)
-        new = dot(given, bound) - whole
-        if old is not None:
-            given *= old > 0
-            on = dot(given, bound) - dot(given, begun)
-            new -= on
+        given = after.plastic_displacement[box]
+        whole, on, new = step_sums(given, old, begun, _on(after.bound, box))
         share = ratio / (ratio - 1) - 1 / math.log(ratio) if 1 < ratio < math.inf else 0.5
         work, error = share * on + _NEW * new, _RULE_ERROR * abs(on) + _NEW_ERROR * abs(new)
         error *= _OF_MERGING if self.size_effect else 1.0

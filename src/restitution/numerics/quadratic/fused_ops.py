@@ -7,6 +7,7 @@ z the preconditioned gradient, d the step, and Kd the product of K and d. p, g, 
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -26,9 +27,14 @@ def as_rows(lower: Bound, upper: Bound, p: Array) -> Bounds:
     def rows(bound: Bound) -> Bound:
         if isinstance(bound, np.ndarray) or not loop_takes(p):
             return bound
-        return np.broadcast_to(np.full(p.shape[1], bound, p.dtype), p.shape)
+        return _rows(float(bound), p.shape, p.dtype)
 
     return rows(lower), rows(upper)
+
+
+@lru_cache(maxsize=64)
+def _rows(value: float, shape: tuple[int, int], dtype: np.dtype[Any]) -> Array:
+    return np.broadcast_to(np.full(shape[1], value, dtype), shape)
 
 
 @use_loop
