@@ -12,6 +12,7 @@ import argparse
 import json
 import math
 import os
+import resource
 import statistics
 import subprocess
 import sys
@@ -100,10 +101,10 @@ REPORT = """\
 Two silica spheres (R = 5 µm, w = 0.05 J/m², z₀ = 0.3 nm). CPU time (s) of one thread, one BLAS
 thread, of commit 50df63c ("old") and of this version ("new") in turn, medians of {repeats}. The
 last columns are the largest differences over the depths, of COR beside the stated error of the
-steps.
+steps, and the largest memory of the processes.
 
-| case | old, s | new, s | ratio | force | COR (stated) | pull-off |
-|---|---|---|---|---|---|---|
+| case | old, s | new, s | ratio | force | COR (stated) | pull-off | old, MiB | new, MiB |
+|---|---|---|---|---|---|---|---|---|
 {rows}
 
 | the total error | run, s | error, s | ratio |
@@ -168,6 +169,7 @@ def measure(arguments: dict[str, object]) -> dict[str, object]:
     seconds, rows = run(dict(arguments["case"]), total)  # type: ignore[call-overload]
     return {
         "seconds": seconds,
+        "memory": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,  # MiB
         "columns": {name: [float(row[name]) for row in rows] for name in COLUMNS},
     }
 
@@ -344,23 +346,25 @@ def main() -> None:
     parser.add_argument("--repeats", type=int, default=3)
     given = parser.parse_args()
     rows, errors = [], []
+    here = HERE.parent / "src"
     for name, case in CASES.items():
-        pairs = [
-            [in_process(source, case) for source in (given.other / "src", HERE.parent / "src")]
-            for _ in range(given.repeats)
-        ]
-        old, new = (
-            statistics.median(run["seconds"] for run in runs) for runs in zip(*pairs, strict=True)
+        runs = []
+        for _ in range(given.repeats):
+            old, new = (in_process(source, case) for source in (given.other / "src", here))
+            runs.append((old, new, in_process(here, case, total_error=True)))
+        old, new, both = (
+            statistics.median(run["seconds"] for run in kind) for kind in zip(*runs, strict=True)
+        )
+        memory = (
+            f"{max(run['memory'] for run in kind):.0f}" for kind in [*zip(*runs, strict=True)][:2]
         )
         rows.append(
-            f"| {name} | {old:.2f} | {new:.2f} | {old / new:.1f} | {differences(*pairs[0])} |"
+            f"| {name} | {old:.2f} | {new:.2f} | {old / new:.1f} | {differences(*runs[0][:2])} | "
+            f"{' | '.join(memory)} |"
         )
         print(rows[-1], flush=True)
-        both = statistics.median(
-            in_process(HERE.parent / "src", case, total_error=True)["seconds"]
-            for _ in range(given.repeats)
-        )
-        errors.append(f"| {name} | {new:.2f} | {both - new:.2f} | {both / new - 1:.1f} |")
+        ratio = statistics.median(b["seconds"] / a["seconds"] for _, a, b in runs) - 1
+        errors.append(f"| {name} | {new:.2f} | {both - new:.2f} | {ratio:.1f} |")
         print(errors[-1], flush=True)
     lost = []
     for name in JUMPS:

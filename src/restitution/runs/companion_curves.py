@@ -17,9 +17,9 @@ from restitution.curve.work_curve import WorkCurve
 from restitution.errors import DomainError, RestitutionError
 
 # Allowed errors of COR due to the steps of adhesive unloading, and of paths that follow them also
-# in loading. For yielding silica (benchmarks/cohesive.py), COR then differs by at most 2e-3 from
+# in loading. For yielding silica (benchmarks/cohesive.py), COR then differs by at most 3e-3 from
 # that of 0.0005.
-_TOLERANCE, _OF_PATHS = 0.005, 0.01
+_TOLERANCE, _OF_PATHS = 0.005, 0.015
 _RESIDUAL = 3e-4  # of solves under pressure on a loading path
 
 # A companion curve has two more depths than the run: the smallest depth times the first factor, and

@@ -110,13 +110,13 @@ def follow(
             if guide is not None and at != target:
                 at = guide.stop(state.indentation, at)
         length, last = abs(at - state.indentation), at == target
-        state_on = _on_fitting_box(state, at, target, residual)
+        loose = _tolerance(state, at, accuracy, residual)
+        state_on = _on_fitting_box(state, at, target, loose)
         if state_on is not state:
             rejected += state_on.convolutions
             state = state_on
         try:
-            loose = residual if last else _tolerance(state, at, accuracy, residual)
-            step = _try(state, at, loose, known or guide, reach)
+            step = _try(state, at, residual if last else loose, known or guide, reach)
         except FarEquilibriumError as left_branch:
             rejected += left_branch.convolutions
             ahead.left = at
