@@ -14,7 +14,7 @@ from restitution.numerics.expressions import (
     max_magnitude,
     multipoles,
 )
-from restitution.numerics.growing_bound import growing_bound
+from restitution.numerics.growing_bound import growing_bound, step_sums
 from restitution.numerics.quadratic import fused_ops
 from restitution.numerics.quadratic.fused_ops import (
     as_rows,
@@ -249,6 +249,19 @@ def test_going_between_grids_is_that_of_the_expressions(dtype, shape, seed):
     for operation, *args in ((restrict, fine, coarse), (prolong, coarse, fine)):
         (_, (_, expected)), (_, (_, found)) = both(operation, *args)
         assert_allclose(found, expected, rtol=few, atol=few)
+
+
+@settings(deadline=None, max_examples=25)
+@given(shapes, seeds)
+def test_sums_of_a_plastic_step_are_those_of_the_expressions(shape, seed):
+    rng = np.random.default_rng(seed)
+    now, before, begun, bound = rng.normal(size=(4, *shape))
+    before[rng.random(shape) < 0.3] = 0.0
+    row = np.broadcast_to(begun[0], shape)  # a bound that is a number
+    for first in (begun, row):
+        (expected, _), (found, _) = both(step_sums, now, before, first, bound)
+        assert_allclose(found, expected, rtol=1e-9, atol=1e-11)
+        assert found[1] + found[2] == approx(((now - before) * (bound - first)).sum(), abs=1e-9)
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
