@@ -82,4 +82,4 @@ class OperatorCache:
 
 # Cache of operators and kernels for the whole process. Each operator fits one size of the rectangle
 # of nodes that is solved, which grows with the contact. Other surfaces need the same sizes again.
-operator_cache = OperatorCache(max_bytes=384 * 2**20, max_items=17, small_bytes=32 * 2**20)
+operator_cache = OperatorCache(max_bytes=384 * 2**20, max_items=17, small_bytes=16 * 2**20)
