@@ -24,7 +24,7 @@ demo: $(VENV)/demo.installed  ## run the bundled example
 	$(BIN)/restitution check examples/steel.toml
 	$(BIN)/restitution run examples/steel.toml -o demo
 
-test: $(VENV)/test.installed  ## the tests of the package, 5 to 15 minutes on two cores
+test: $(VENV)/test.installed  ## the tests of the package, 10 to 15 minutes on two cores
 	DUCC0_NUM_THREADS=1 $(BIN)/pytest -n auto --dist worksteal -m "not programs"
 
 test-programs: $(VENV)/test.installed  ## the tests that start other programs: a browser, DEM codes, runs in their own processes

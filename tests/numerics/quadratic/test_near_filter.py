@@ -40,6 +40,11 @@ def test_a_wave_keeps_its_shape_inside(dtype):
     assert factor == approx(np.full(factor.shape, spectrum(1.0, [q], [0.0])[0]), rel=1e-4)
 
 
+def test_the_kept_kernel_cannot_be_changed():
+    with pytest.raises(ValueError, match="read-only"):
+        kernel_of_wave_number(1.0)[0, 0] = 0
+
+
 def test_values_outside_the_array_are_zero():
     r = np.zeros((9, 8))
     r[0, 0], r[-1, -1] = 1.0, 2.0

@@ -65,6 +65,7 @@ class WayAhead:
         near = uncertainty <= self._allowed and not is_long(state, self.left, tension)
         if near or width <= 2 * LEAST_STEP * z0:
             return self.left, math.inf
+        # In a step longer than z₀, nodes move farther than in a jump.
         return 0.5 * (state.indentation + self.left), max(LEAP * z0, 0.5 * width)
 
 

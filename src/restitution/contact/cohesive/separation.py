@@ -35,7 +35,9 @@ _PEAK, _MOST_INSERTED = 1e-3, 4
 # of the largest where the next one is farther than _APART z₀, and again if a force differs from
 # that of the parabola by more than the fraction _SMOOTH.
 _APART, _ROUNDS, _SMOOTH = 0.03, 4, 3e-4
-_FARTHEST = 0.02  # unloading ends where the tension is below this fraction of the largest tension
+# Unloading ends where the tension is below this fraction of the largest tension, at the usual
+# accuracy and, in proportion, at a lower one.
+_FARTHEST = 0.02
 # States are compared with those of a known unloading at this many indentations. They are the same
 # if their displacements differ by at most this fraction of z₀.
 _MEETINGS, _SAME = 4, 1e-3

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.numerics.kernels import use_loop
+from restitution.numerics.read_only import freeze
 
 Array = NDArray[Any]
 
@@ -47,7 +48,7 @@ def kernel_of_wave_number(aspect: float) -> Array:
     terms = np.einsum("ik,jl->ijkl", waves, waves).reshape(symbol.size, -1)
     weight = 1 / np.maximum(symbol, _LEAST * symbol.max())
     kernel = np.linalg.lstsq(terms * weight[:, None], symbol * weight, rcond=None)[0]
-    return np.asarray(kernel.reshape(k.size, k.size))
+    return freeze(np.asarray(kernel.reshape(k.size, k.size)))
 
 
 @use_loop
