@@ -12,6 +12,7 @@
 #include "contours.h"
 #include "growing_bound.h"
 #include "quadratic/fused_ops.h"
+#include "quadratic/few_nodes.h"
 #include "quadratic/grid_transfer.h"
 #include "quadratic/local_mean.h"
 #include "quadratic/near_filter.h"
@@ -21,6 +22,7 @@ void define_for(py::module_& module) {
     define_reductions<T>(module);
     define_newton<T>(module);
     define_fused_ops<T>(module);
+    define_few_nodes<T>(module);
     define_local_mean<T>(module);
     define_near_filter<T>(module);
     define_grid_transfer<T>(module);

@@ -60,6 +60,7 @@ class _Spectral:
         self.count = 0
         self._lock = Lock()
         self._workspace: NDArray[Any] | None = None
+        self._lags: Array | None = None
 
     def with_own_workspace(self) -> Self:
         """Return a copy for another solve, with its own workspace and with `count` set to 0."""
@@ -101,6 +102,14 @@ class Convolution(_Spectral):
         """Return K ∗ p in single precision for a p with local means near zero."""
         return self.single_precision(p, out)
 
+    def lags(self, rows: int, columns: int) -> Array:
+        """Kernel at lags below `rows` along x and `columns` along y, transposed."""
+        if self._lags is None:
+            impulse = np.zeros(self.shape)
+            impulse[0, 0] = 1.0
+            self._lags = np.ascontiguousarray(self(self._device.put(impulse)).T)
+        return self._lags[:columns, :rows]
+
 
 class FreeConvolution(Convolution):
     """Linear convolution: values outside the array are zero.
@@ -120,9 +129,13 @@ class FreeConvolution(Convolution):
         super().__init__(shape, (px, py), device)
         # The kernel is transposed, as `Device.convolve` expects.
         lags = kernel(device.arange(px // 2 + 1)[None, :], device.arange(py // 2 + 1)[:, None])
-        self.diagonal = float(lags[0, 0])
+        self.diagonal, self._kernel = float(lags[0, 0]), kernel
         self._spectrum = device.even_spectrum(lags.astype(np.float32) if single else lags)
         self._single_spectrum = self._spectrum.astype(np.float32, copy=False)
+
+    def lags(self, rows: int, columns: int) -> Array:
+        arange = self._device.arange
+        return self._kernel(arange(rows)[None, :], arange(columns)[:, None])
 
 
 class WrappedConvolution(Convolution):

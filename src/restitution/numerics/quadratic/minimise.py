@@ -14,7 +14,9 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.numerics.convolution.operators import Convolution
 from restitution.numerics.expressions import dot, max_magnitude
+from restitution.numerics.quadratic.few_nodes import Lags, few_free, minimum_on
 from restitution.numerics.quadratic.fused_ops import (
     Bound,
     as_rows,
@@ -49,6 +51,9 @@ _MIN_STEP, _MAX_STEP, _STEP_DAMPING = 0.1, 3.0, 0.5
 # If the trial length has decreased to this value, the preconditioned gradient is almost
 # perpendicular to the gradient. One step then follows the gradient itself.
 _STALLED_LENGTH = 1e-8
+# After a step on few nodes that leaves more than this fraction of the violation, the next step is
+# one of all nodes.
+_FEW_CONVERGE = 0.5
 
 
 class Operator(Protocol):
@@ -71,6 +76,12 @@ class BoundedQuadratic:
     lower: Bound
     upper: Bound
     K_single: Operator | None = None
+    lags: Lags | None = None
+
+    @classmethod
+    def of(cls, K: Convolution, b: Array, lower: Bound, upper: Bound) -> BoundedQuadratic:
+        """Problem with all that the operator `K` provides."""
+        return cls(K, b, lower, upper, K.single_precision, K.lags)
 
 
 @dataclass(frozen=True)
@@ -136,6 +147,8 @@ def minimise_quadratic(
     rz_old, iteration = 0.0, 0
     step_change = 1.0  # factor by which the trial length last changed
     trial_length = _INITIAL_STEP
+    lags = problem.lags if isinstance(p, np.ndarray) else None  # sweeps are slow on a GPU
+    converges = True  # whether the last step on few nodes, if it was one, was worth its time
 
     for iteration in range(1, max_iterations + 1):
         if not (residual > tolerance and residual > _CLEAR * error):
@@ -145,15 +158,19 @@ def minimise_quadratic(
             g, error = K(p, out=g), 0.0
             residual = measured(projected_gradient(p, g, b, bounds, r), r)
             continue
-        z = precondition(r, out=z)
-        if trial_length < _STALLED_LENGTH:
-            z = np.multiply(r, math.sqrt(dot(z, z) / dot(r, r)), out=z)
-            trial_length, rz_old, step_change = _INITIAL_STEP, 0.0, 1.0
-        rz, overlap = dot_products(z, r, r_old)
-        beta = (rz - max(overlap, 0.0)) / rz_old if rz_old > 0 else 0.0
-        beta = beta * step_change if beta > 0 else 0.0
-        length = math.copysign(trial_length, rz)  # negative for an ascent direction
-        slope, cut = projected_direction(d, beta, z, length, p, g, r, bounds)
+        few = few_free(r) if lags and converges else None
+        if lags and few is not None:
+            slope, cut, rz = minimum_on(few, lags, p, g, bounds, d), True, 0.0
+        else:
+            z = precondition(r, out=z)
+            if trial_length < _STALLED_LENGTH:
+                z = np.multiply(r, math.sqrt(dot(z, z) / dot(r, r)), out=z)
+                trial_length, rz_old, step_change = _INITIAL_STEP, 0.0, 1.0
+            rz, overlap = dot_products(z, r, r_old)
+            beta = (rz - max(overlap, 0.0)) / rz_old if rz_old > 0 else 0.0
+            beta = beta * step_change if beta > 0 else 0.0
+            length = math.copysign(trial_length, rz)  # negative for an ascent direction
+            slope, cut = projected_direction(d, beta, z, length, p, g, r, bounds)
         Kd = K_single(d, out=Kd)
         dKd, max_Kd = curvature(d, Kd)
         if not dKd < math.inf or (slope < 0 and dKd <= 0):
@@ -163,11 +180,13 @@ def minimise_quadratic(
         if step > 1 and violates_bounds(p, d, step, bounds):
             step = 1.0
         r, r_old = r_old, r
-        residual = measured(take_step(p, g, d, Kd, step, bounds, r), r)
+        before, residual = residual, measured(take_step(p, g, d, Kd, step, bounds, r), r)
+        converges = few is None or residual < _FEW_CONVERGE * before
         error = float(np.hypot(error, rounding * step * max_Kd))
         rz_old = rz
-        step_change = min(max(optimum, _MIN_STEP), _MAX_STEP) ** _STEP_DAMPING
-        trial_length *= step_change
+        if few is None:
+            step_change = min(max(optimum, _MIN_STEP), _MAX_STEP) ** _STEP_DAMPING
+            trial_length *= step_change
 
     if not accept_estimated_gradient and error > 0:
         g, error = K(p, out=g), 0.0

@@ -101,7 +101,7 @@ def solve_multilevel(
         K, inverse = (whole_K, whole_inverse) if whole else operators(shape_of(window), 0)
         bound = upper[window] if _is_array(upper) else upper
         minimum = minimise_quadratic(
-            BoundedQuadratic(K, b[window], 0.0, bound, K.single_precision),
+            BoundedQuadratic.of(K, b[window], 0.0, bound),
             start=p[window],
             precondition=_preconditioner(inverse, p[window], b[window], bound, periodic),
             tolerance=tolerance,
@@ -195,7 +195,7 @@ def _first_guess(operators: Operators, b: Array, upper: Bound, periodic: bool = 
         start = np.zeros_like(b) if start is None else start
         K, inverse = operators((b.shape[0], b.shape[1]), level)
         minimum = minimise_quadratic(
-            BoundedQuadratic(K, b, 0.0, upper, K.single_precision),
+            BoundedQuadratic.of(K, b, 0.0, upper),
             start=start,
             precondition=_preconditioner(inverse, start, b, upper, periodic),
             tolerance=_COARSE_ACCURACY * max(float(np.max(fine[0])), 0.0),

@@ -112,7 +112,7 @@ def _search(
         b = multiplier - h
         tolerance = target.tolerance(multiplier, bracket.slope)
         minimum = minimise_quadratic(
-            BoundedQuadratic(K, b, 0.0, upper, K.single_precision),
+            BoundedQuadratic.of(K, b, 0.0, upper),
             start=p,
             precondition=inverse,
             tolerance=max(tolerance, _ACCURACY * error),
