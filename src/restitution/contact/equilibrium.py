@@ -146,11 +146,12 @@ def solve_pressure(
         K, inverse = operators(shape, 0)
         guess = held.first_guess
         minimum = minimise_quadratic(
-            BoundedQuadratic.of(
+            BoundedQuadratic(
                 K,
                 device.put(b),
                 lower=device.put(np.where(held.mask, -held.tension, 0.0)),
                 upper=upper,
+                K_single=K.single_precision,
             ),
             start=device.put(np.zeros(shape) if guess is None else guess.copy()),
             precondition=inverse,
