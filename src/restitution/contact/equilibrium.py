@@ -145,6 +145,7 @@ def solve_pressure(
     else:
         K, inverse = operators(shape, 0)
         guess = held.first_guess
+        # Without lags: after loose solves, the pull-off force depends on the steps.
         minimum = minimise_quadratic(
             BoundedQuadratic(
                 K,
