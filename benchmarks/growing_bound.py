@@ -132,7 +132,7 @@ def measure(version: Path, repeats: int) -> dict[str, Times]:
     """Times of all curves, by surface and curve, of the version in a folder and its benchmark."""
     paths = os.pathsep.join((str(version / "src"), str(version / "benchmarks")))
     done = subprocess.run(
-        [sys.executable, "-W", "ignore", "-c", WORKER, str(repeats)],
+        [sys.executable, "-P", "-W", "ignore", "-c", WORKER, str(repeats)],
         env={**os.environ, "PYTHONPATH": paths, "OPENBLAS_NUM_THREADS": "1"},
         check=True,
         stdout=subprocess.PIPE,
