@@ -26,6 +26,7 @@ from restitution import (
 )
 from restitution.contact.checks.model_error import model_error
 from restitution.contact.checks.resolution import resolves_contact
+from restitution.contact.plasticity import size_effect
 from restitution.contact.plasticity.size_effect import (
     BERKOVICH,
     dislocation_density,
@@ -305,6 +306,15 @@ def test_the_model_error_includes_that_of_the_law(kind):
     by_law, whole = np.transpose([error(length) for length in (0.0, *LENGTHS)])
     assert np.all(np.diff(by_law) > 0)
     assert np.all(whole[1:] > whole[0])
+
+
+@pytest.mark.parametrize("kind", [0, 1])
+@pytest.mark.parametrize("length", [0.0, 0.4e-6])
+def test_the_error_of_the_law_takes_no_solve(kind, length, monkeypatch):
+    """The bound has found the density; without a size effect, none is needed."""
+    *_, state = loading_path(rough(models(length)[kind]), [0.75 * DEEP, DEEP])
+    monkeypatch.setattr(size_effect, "elastic_pressure", None)
+    assert (state.contact.plasticity.hardness_error(state) > 0) == (length > 0)
 
 
 @pytest.mark.parametrize("depth", [1.0, 0.1])

@@ -118,9 +118,16 @@ def strengthening_of_waves(contact: Contact, length: float, pressure: Array) -> 
 def strengthening_at(
     contact: Contact, indentation: float, length: float
 ) -> tuple[Array | float, int]:
-    """`strengthening` on the whole grid, and the number of convolutions that it took.
+    """`strengthening` on the whole grid, and the number of convolutions that it took."""
+    density, count = _density_at(contact, indentation)
+    return (1.0 if density is None else strengthening(length, density)), count
 
-    Nodes without pressure have a mean of the patches around them.
+
+@lru_cache(maxsize=4)  # the bound of a state and the error of its hardness need the same
+def _density_at(contact: Contact, indentation: float) -> tuple[Array | None, int]:
+    """`dislocation_density` on the whole grid, and the number of convolutions that it took.
+
+    Nodes without pressure have a mean of the patches around them; None without any pressure.
     """
     deep = _DEEPER * indentation
     if contact.periodic:
@@ -132,11 +139,11 @@ def strengthening_at(
         box = candidate_box(contact, deep) or window
         pressure = reframe(pressure, window, box)
     if not pressure.any():
-        return 1.0, count
+        return None, count
     density = dislocation_density(contact, pressure, periodic=contact.periodic)
-    factor = strengthening(length, spread(density, pressure, periodic=contact.periodic))
+    density = spread(density, pressure, periodic=contact.periodic)
     around = [(side.start, n - side.stop) for side, n in zip(box, contact.grid.nodes, strict=True)]
-    return np.pad(factor, around, mode="edge"), count
+    return freeze(np.pad(density, around, mode="edge")), count
 
 
 def sharpness(state: State) -> tuple[Array, Array]:
@@ -149,16 +156,17 @@ def sharpness(state: State) -> tuple[Array, Array]:
     return np.concatenate(inverse), np.concatenate(work)
 
 
-@lru_cache(maxsize=4)
 def _sharpness(contact: Contact, indentation: float) -> Array:
     ratio, _ = strengthening_at(contact, max(indentation, 0.0), 1.0)
-    return freeze(np.array(np.broadcast_to(np.square(ratio) - 1, contact.grid.nodes)))
+    return np.broadcast_to(np.square(ratio) - 1, contact.grid.nodes)
 
 
 def hardness_error(length: float, state: State) -> float:
     """Relative error of the hardness in `state` for h* = `length` (m), weighted by plastic work."""
+    if not length:
+        return 0.0
     inverse, work = sharpness(state)
-    if not length or not inverse.size:
+    if not inverse.size:
         return 0.0
     share = _SHARED if state.contact.yields == "both" else 1.0
     return float(np.average(error_of_law(length / share, share * inverse), weights=work))
