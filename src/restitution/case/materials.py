@@ -115,11 +115,7 @@ def material(name: str) -> Material:
     Raises:
         CaseError: The library has no material of this name.
     """
-    known = {
-        _plain(word): entry
-        for entry in materials().values()
-        for word in (entry.key, *entry.aliases)
-    }
+    known = _by_word()
     if entry := known.get(_plain(name)):
         return entry
     hint = _mentions(_plain(name)) or did_you_mean(_plain(name), known, _ALIKE)
@@ -127,6 +123,15 @@ def material(name: str) -> Material:
         f"{shown(name)} is not a material of the library; {hint}{' ' if hint else ''}"
         f"known materials: {', '.join(materials())}"
     )
+
+
+@cache
+def _by_word() -> dict[str, Material]:
+    return {
+        _plain(word): entry
+        for entry in materials().values()
+        for word in (entry.key, *entry.aliases)
+    }
 
 
 def work_of_adhesion(first: str, second: str) -> Property[float]:
