@@ -170,10 +170,10 @@ class Clock:
     def __init__(self, folder, times):
         self.pace, self.ladder, self.times = Pace(), ladder_of(DRY, folder), times
 
-    def drawn(self):
+    def drawn(self, spent=0.0):
         """The numbers of the levels that are drawn, and the time until the first of them."""
-        numbers, spent, first = [], 0.0, None
-        at = self.pace.first(self.ladder)
+        numbers, first = [], None
+        at = self.pace.first(self.ladder, spent)
         while True:
             spent += self.times[at]
             self.pace.note(self.ladder, at, self.times[at])
@@ -197,6 +197,14 @@ def test_the_finest_preview_that_comes_soon_is_drawn(tmp_path):
     assert clock.drawn() == ([2, 3], 0.1)
 
 
+def test_the_time_before_the_first_solve_counts(tmp_path):
+    """That of making the surface, for example."""
+    clock = Clock(tmp_path, [0.01, 0.03, 0.1, 0.5])
+    clock.drawn()
+    assert clock.drawn(spent=0.06) == ([1, 2, 3], 0.09)
+    assert clock.drawn(spent=1.0) == ([0, 1, 2, 3], 1.01)
+
+
 def test_a_slow_curve_is_drawn_coarse_first_and_then_finer(tmp_path):
     clock = Clock(tmp_path, [0.5, 2.0, 8.0, 60.0])
     for _ in range(3):
@@ -218,7 +226,7 @@ def test_times_of_other_curves_do_not_count(tmp_path):
     clock = Clock(tmp_path, [0.004, 0.01, 0.03, 0.1])
     clock.drawn()
     clock.ladder = ladder_of(JKR, tmp_path)
-    assert clock.pace.first(clock.ladder) == 0
+    assert clock.pace.first(clock.ladder, 0.0) == 0
 
 
 @pytest.mark.parametrize("text", [DRY, IMPACT, JKR, COHESIVE], ids=["dry", "impact", "jkr", "far"])

@@ -55,14 +55,15 @@ class LiveCurves:
         If the curve takes long, previews come first. The scans of the case are in `folder`. `check`
         raises if the curve is no longer wanted.
         """
+        asked = time.perf_counter()
         case = parse_case(text).realisation(0)
         case.require_impact()
         # With "auto", the grids are chosen after the previews, which takes solves.
-        curve = self._curve(least_refined(case, folder), folder)
+        curve = self._curve(least_refined(case, folder), folder, asked)
         yield from curve.previews(self._pace, check)
         ladder, began = curve.ladder, time.perf_counter()
         if (chosen := with_chosen_grids(case, folder)) is not case:
-            curve = self._curve(chosen, folder)
+            curve = self._curve(chosen, folder, began)
         self._curves.pop(tab, None)
         self._curves[tab] = curve
         if len(self._curves) > _TABS:
@@ -89,14 +90,14 @@ class LiveCurves:
             yield from curve.with_surface(shown, check)
             yield from curve.with_errors(folder, check)
 
-    def _curve(self, case: Case, folder: Path) -> _Curve:
+    def _curve(self, case: Case, folder: Path, began: float) -> _Curve:
         contact = self._contact(case, folder)
         deepest = deepest_indentation(case)
         require_possible(contact, deepest)
         warnings = omissions(case) + loss_warnings(case)
         warnings += input_warnings(contact, deepest, case.prescribed)
         case = with_chosen_adhesion(case, contact, warnings.append)
-        return _Curve(case, contact, warnings)
+        return _Curve(case, contact, warnings, began)
 
     def _contact(self, case: Case, folder: Path) -> Contact:
         scans = [folder / part.file for part in case.roughness if part.kind == "measured"]
@@ -114,9 +115,8 @@ class LiveCurves:
 
 
 class _Curve:
-    def __init__(self, case: Case, contact: Contact, warnings: list[str]) -> None:
-        self.case, self.contact, self.warnings = case, contact, warnings
-        self.began = time.perf_counter()
+    def __init__(self, case: Case, contact: Contact, warnings: list[str], began: float) -> None:
+        self.case, self.contact, self.warnings, self.began = case, contact, warnings, began
         self.ladder = Ladder(case, contact)
         self.points: list[Point] = []
         self.maps = ContactMaps(contact)
@@ -125,7 +125,7 @@ class _Curve:
     def previews(self, pace: Pace, check: Callable[[], None]) -> Iterator[str]:
         """Yield the curves of coarser levels, unless the last level is expected soon."""
         ladder, drawn = self.ladder, False
-        number = pace.first(ladder)
+        number = pace.first(ladder, time.perf_counter() - self.began)
         while number < len(ladder.levels) - 1:
             level, points = ladder.levels[number], list[Point]()
             words, start = ladder.words(level), time.perf_counter()

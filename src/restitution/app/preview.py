@@ -28,7 +28,7 @@ _FEWEST_PER_RADIUS = 4  # nodes in the radius of a contact with the fewest depth
 _PER_ATTRACTION = 2.0  # how much larger a contact counts that attraction alone makes
 _UNLOADING, _LOADING = 0.05, 0.02  # errors of COR that previews accept from the steps of each
 
-# Time (s) of solving for which the page waits rather than draw a coarser level first: a curve
+# Time (s) for which the page waits rather than draw a coarser level first: a curve
 # should follow a slider within 0.3 s, and takes 0.1 s to be drawn.
 _SOON = 0.15
 # A level is left out if a finer one takes at most this many times as long as the last one drawn.
@@ -164,14 +164,17 @@ class Pace:
         if len(self._seconds) > _MOST_KINDS:
             del self._seconds[next(iter(self._seconds))]
 
-    def first(self, ladder: Ladder) -> int:
-        """The number of the level to begin with: the finest that is expected soon, or 0."""
-        return _finest(self._expected(ladder), 0, _SOON)
+    def first(self, ladder: Ladder, spent: float) -> int:
+        """The number of the level to begin with: the finest that is expected soon, or 0.
+
+        `spent` is the time (s) since the page asked for the curve.
+        """
+        return _finest(self._expected(ladder), 0, _SOON - spent)
 
     def next(self, ladder: Ladder, done: int, spent: float) -> tuple[int, bool]:
         """The number of the level after `done`, and whether to draw `done` before.
 
-        `spent` is the time (s) since the beginning of the curve.
+        `spent` is that of `first`.
         """
         expected = self._expected(ladder)
         if expected[done + 1] <= _SOON - spent:
