@@ -60,7 +60,6 @@ class _Spectral:
         self.count = 0
         self._lock = Lock()
         self._workspace: NDArray[Any] | None = None
-        self._lags: Array | None = None
 
     def with_own_workspace(self) -> Self:
         """Return a copy for another solve, with its own workspace and with `count` set to 0."""
@@ -84,6 +83,7 @@ class Convolution(_Spectral):
     diagonal: float
     _spectrum: NDArray[Any]
     _single_spectrum: NDArray[np.float32]
+    _lags: Array | None = None
 
     @property
     def nbytes(self) -> int:
